@@ -86,6 +86,13 @@ void FixtureDisc(Fixture *fixture, LamDiscPart part, PetscInt along, PetscInt ac
   fixture->scene.macro.elements[1] = across;
 }
 
+void FixtureQuarterDisc(Fixture *fixture, PetscInt n, PetscInt steps)
+{
+  FixtureScene(fixture, n, n, 1, steps);
+  FixtureDisc(fixture, LAM_DISC_QUARTER, n, n);
+  FixtureSymmetry(fixture);
+}
+
 const PetscReal *FixtureReaction(const Fixture *fixture, const char name[])
 {
   const LamMacroStep *step = &fixture->steps[fixture->step_count - 1];

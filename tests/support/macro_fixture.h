@@ -44,6 +44,8 @@ void FixtureInflate(Fixture *fixture);
 void FixtureLegs(Fixture *fixture, PetscInt n, const LamLeg legs[]);
 /* A disc of radius 1, or a part of it. */
 void FixtureDisc(Fixture *fixture, LamDiscPart part, PetscInt along, PetscInt across);
+/* A scene with a quarter of it, n x n elements along and across, and its symmetry. */
+void FixtureQuarterDisc(Fixture *fixture, PetscInt n, PetscInt steps);
 /* Force on the body at a named side in the last step. */
 const PetscReal *FixtureReaction(const Fixture *fixture, const char name[]);
 void FixtureSetUp(Fixture *fixture, MPI_Comm comm);

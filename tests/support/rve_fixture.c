@@ -8,6 +8,17 @@ LamRVE NewRVE(const LamMicrostructure *micro)
   return rve;
 }
 
+LamRVE NewSealable(const LamMicrostructure *micro)
+{
+  LamRVE rve;
+
+  CHECK(LamRVECreate(PETSC_COMM_SELF, &rve));
+  CHECK(LamRVESetMicrostructure(rve, micro));
+  CHECK(LamRVESetSealable(rve, PETSC_TRUE));
+  CHECK(LamRVESetUp(rve));
+  return rve;
+}
+
 LamRVEState NewState(LamRVE rve)
 {
   LamRVEState state;

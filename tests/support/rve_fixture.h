@@ -6,6 +6,8 @@
 #include "contact_tissue.h"
 
 LamRVE NewRVE(const LamMicrostructure *micro);
+/* With lumens that may be sealed. */
+LamRVE NewSealable(const LamMicrostructure *micro);
 LamRVEState NewState(LamRVE rve);
 /* Solves from F = I in one go. */
 LamResponse SolveFromReference(LamRVE rve, LamLoad load);

@@ -107,12 +107,11 @@ static double Area(const Element *element)
 TEST(AffineFieldIsExact)
 {
   const double F[4] = {1.2, 0.3, -0.1, 0.9};
-  uint64_t seed = 5;
   Element element;
   LamElementResult result;
   double P[4], W, moment[4] = {0, 0, 0, 0};
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){5});
   MoveAffinely(&element, F);
   W = Homogeneous(&element, F, P);
   result = Evaluate(&element);
@@ -178,8 +177,7 @@ static double Difference(const Element *at, int dof, int component)
 
 TEST(ResidualIsDerivativeOfEnergy)
 {
-  uint64_t seed = 7;
-  Element element = RandomElement(&seed);
+  Element element = RandomElement(&(uint64_t){7});
   const LamElementResult result = Evaluate(&element);
 
   assert_near(result.energy, Energy(&element), 1e-13 * result.energy);
@@ -188,8 +186,7 @@ TEST(ResidualIsDerivativeOfEnergy)
 
 TEST(ConsistentTangentIsDerivativeOfResidual)
 {
-  uint64_t seed = 8;
-  Element element = RandomElement(&seed);
+  Element element = RandomElement(&(uint64_t){8});
   const LamElementResult result = Evaluate(&element);
   double largest = 0.0;
 
@@ -200,8 +197,7 @@ TEST(ConsistentTangentIsDerivativeOfResidual)
 
 TEST(TangentIsSymmetric)
 {
-  uint64_t seed = 9;
-  Element element = RandomElement(&seed);
+  Element element = RandomElement(&(uint64_t){9});
   LamElementResult result;
 
   for (int k = 0; k < LAM_PRESSURES; k++) element.stress.p[k] += 0.3; /* also away from consistent stresses */
@@ -213,8 +209,7 @@ TEST(TangentIsSymmetric)
 
 TEST(ResidualDoesNotDependOnIndependentStresses)
 {
-  uint64_t seed = 10;
-  Element element = RandomElement(&seed);
+  Element element = RandomElement(&(uint64_t){10});
   const LamElementResult before = Evaluate(&element);
   LamElementResult after;
 
@@ -226,8 +221,7 @@ TEST(ResidualDoesNotDependOnIndependentStresses)
 
 TEST(Stretch33DerivativesFollowFromEnergy)
 {
-  uint64_t seed = 13;
-  Element element = RandomElement(&seed), moved;
+  Element element = RandomElement(&(uint64_t){13}), moved;
   double force[3], fx[18], ff, scratch;
 
   (void)Evaluate(&element);
@@ -251,8 +245,7 @@ TEST(Stretch33DerivativesFollowFromEnergy)
 TEST(RotationTurnsTheForces)
 {
   const double c = cos(0.9), s = sin(0.9);
-  uint64_t seed = 14;
-  Element element = RandomElement(&seed), turned = element;
+  Element element = RandomElement(&(uint64_t){14}), turned = element;
   const LamElementResult before = Evaluate(&element);
   LamElementResult after;
 
@@ -271,10 +264,9 @@ TEST(RotationTurnsTheForces)
 /* A parallelogram moved by x1 = X1 + c X1^2/2, x2 = X2, which quadratic shape functions hold exactly: J = 1 + c X1. */
 static Element Parallelogram(double c)
 {
-  uint64_t seed = 1;
   Element element;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){1});
   for (int a = 0; a < 9; a++) {
     element.X[a][0] = 0.2 * grid[a][0] + 0.05 * grid[a][1];
     element.X[a][1] = 0.02 * grid[a][0] + 0.1 * grid[a][1];
@@ -313,10 +305,9 @@ TEST(LinearDilatationIsProjectedOntoItself)
 /* The pressure functions are orthonormal over the element. */
 TEST(PressureBasisIsOrthonormal)
 {
-  uint64_t seed = 15;
   Element element;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){15});
   for (int k = 0; k < LAM_PRESSURES; k++)
     for (int l = 0; l < LAM_PRESSURES; l++) {
       double dot = 0.0;
@@ -359,12 +350,11 @@ TEST(StressUpdateIsTheLinearisation)
 TEST(InsideOutElementIsInvalid)
 {
   const double mirror[4] = {-1, 0, 0, 1};
-  uint64_t seed = 18;
   Element element;
   LamElementResult result;
   PetscBool valid;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){18});
   MoveAffinely(&element, mirror);
   LamElementEvaluate(&element.geometry, element.law, &wall, (const double(*)[2])Displacements(&element).u, 1.0,
                      &element.stress, &result, &valid);
@@ -376,11 +366,10 @@ TEST(InsideOutElementIsInvalid)
 TEST(FieldsOfAffineStretchAreExact)
 {
   const double F[4] = {1.2, 0.3, -0.1, 0.9}, J = F[0] * F[3] - F[1] * F[2];
-  uint64_t seed = 19;
   Element element;
   double stretch[LAM_GAUSS], stress[LAM_GAUSS], P[4], s11, s12, s22;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){19});
   MoveAffinely(&element, F);
   LamElementFields(&element.geometry, element.law, &wall, (const double(*)[2])Displacements(&element).u, 1.0, stretch,
                    stress);
@@ -400,13 +389,12 @@ TEST(OverflowIsInvalid)
   const LamWall steep = {
       .law = LAM_WALL_FIBRE_EXPONENTIAL, .C1 = 0.7, .C2 = 0.3, .k1 = 1.0, .k2 = 1e6, .bulk_modulus = 1000.0};
   const double F[4] = {1.5, 0, 0, 1.0};
-  uint64_t seed = 5;
   LamElementResult result;
   PetscBool valid;
   Element element;
   double energy;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){5});
   assert_int_equal(LamWallLawGet(steep.law, &element.law), 0);
   MoveAffinely(&element, F);
   const NodeVectors u = Displacements(&element);
@@ -446,10 +434,9 @@ TEST(DispersedFibresHaveTheEnergyOfTheirPaper)
   const double F[4] = {1.2, 0.3, -0.1, 0.9}, F33 = 1.1, Fm[2] = {1.2 * 0.8 + 0.3 * 0.6, -0.1 * 0.8 + 0.9 * 0.6};
   const double I1 = 1.2 * 1.2 + 0.3 * 0.3 + 0.1 * 0.1 + 0.9 * 0.9 + 1.1 * 1.1, I4 = Fm[0] * Fm[0] + Fm[1] * Fm[1];
   const double dispersion[3] = {0.0, 0.15, 1.0 / 3.0};
-  uint64_t seed = 5;
   Element element;
 
-  NewElement(&element, &seed);
+  NewElement(&element, &(uint64_t){5});
   MoveAffinely(&element, F);
   element.F33 = F33;
   const double plain = (wall.C4 = 0.0, Energy(&element));

@@ -71,10 +71,9 @@ static void assert_same(const LamJet *jet, const LamJet *expected, double tolera
 
 TEST(the_quintic_returns_the_data_at_corners)
 {
-  uint64_t seed = 1;
   LamJet corner[8];
 
-  RandomCorners(&seed, 0, corner);
+  RandomCorners(&(uint64_t){1}, 0, corner);
   for (int c = 0; c < 8; c++) {
     const double t[3] = {c & 1, c >> 1 & 1, c >> 2};
     const LamJet jet = Quintic(corner, t);
@@ -86,10 +85,9 @@ TEST(the_quintic_returns_the_data_at_corners)
 /* Known: the data. Not known: that of the cubic along the edge, and the other end keeps its own. */
 TEST(an_unknown_second_derivative_is_that_of_the_cubic)
 {
-  uint64_t seed = 2;
   LamJet corner[8];
 
-  RandomCorners(&seed, 0.5, corner);
+  RandomCorners(&(uint64_t){2}, 0.5, corner);
   for (int c = 0; c < 8; c++) {
     const double t[3] = {c & 1, c >> 1 & 1, c >> 2};
     const LamJet cubic = Cubic(corner, t), quintic = Quintic(corner, t);

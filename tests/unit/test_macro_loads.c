@@ -163,9 +163,7 @@ MACRO_TEST(PressureOnADiscIsUniform)
   PetscReal F[9];
   LamBoundary *boundary;
 
-  FixtureScene(fixture, 2, 2, 1, 2);
-  FixtureDisc(fixture, LAM_DISC_QUARTER, 2, 2);
-  FixtureSymmetry(fixture);
+  FixtureQuarterDisc(fixture, 2, 2);
   boundary = FixtureAdd(fixture, "rim", LAM_BOUNDARY_PRESSURE);
   boundary->traction[1] = -p;
   boundary->follower = PETSC_TRUE;
@@ -244,9 +242,7 @@ TEST(DiscUnderAPlateIsSymmetric)
   for (int mirrored = 0; mirrored < 2; mirrored++) {
     Fixture fixture;
     LamBoundary *plate;
-    FixtureScene(&fixture, 3, 3, 1, 4);
-    FixtureDisc(&fixture, LAM_DISC_QUARTER, 3, 3);
-    FixtureSymmetry(&fixture);
+    FixtureQuarterDisc(&fixture, 3, 4);
     plate = FixtureAdd(&fixture, "rim", LAM_BOUNDARY_PLATE);
     plate->displacement[1 - mirrored] = -0.3;
     plate->normal[1 - mirrored] = -1;
@@ -285,10 +281,8 @@ MACRO_TEST(OneStepBackIsEnough)
 {
   LamBoundary *plate;
 
-  FixtureScene(fixture, 3, 3, 1, 4);
-  FixtureDisc(fixture, LAM_DISC_QUARTER, 3, 3);
+  FixtureQuarterDisc(fixture, 3, 4);
   FixtureLegs(fixture, 3, (LamLeg[]){{1, 2}, {0.5, 1}, {-1, 1}});
-  FixtureSymmetry(fixture);
   plate = FixtureAdd(fixture, "rim", LAM_BOUNDARY_PLATE);
   Set(plate->displacement, 0, -0.2);
   Set(plate->normal, 0, -1);
@@ -405,9 +399,7 @@ MACRO_TEST(IndentationIsFast)
 /* Symmetry is held during inflation: its sides stay, and the body is free of stress. */
 MACRO_TEST(InflationKeepsSymmetry)
 {
-  FixtureScene(fixture, 2, 2, 1, 1);
-  FixtureDisc(fixture, LAM_DISC_QUARTER, 2, 2);
-  FixtureSymmetry(fixture);
+  FixtureQuarterDisc(fixture, 2, 1);
   FixtureInflate(fixture);
   fixture->stop_after = 0;
   FixtureRun(fixture, PETSC_COMM_WORLD, LAM_MACRO_STOPPED);

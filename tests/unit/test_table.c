@@ -10,9 +10,8 @@ static const int in_plane[4] = {0, 1, 3, 4};
 static AnalyticTable Rough(PetscBool contact, double orientation)
 {
   AnalyticTable t = AnalyticTableOpen(contact, orientation);
-  uint64_t seed = 1;
 
-  AddRough(&t, 2, 0, &seed);
+  AddRough(&t, 2, 0, &(uint64_t){1});
   return t;
 }
 
@@ -105,13 +104,12 @@ TEST(without_symmetry_nodes_answer_as_their_records)
 {
   const AnalyticTissue tissue = {PETSC_FALSE, 0.1};
   LamScene scene = AnalyticScene(&tissue);
-  uint64_t seed = 2;
   AnalyticTable t;
 
   scene.micro.cells[0] = 2;
   t = AnalyticTableOpenScene(tissue, scene);
   assert_false(t.grid->symmetric);
-  AddRough(&t, 2, 0, &seed);
+  AddRough(&t, 2, 0, &(uint64_t){2});
   AssertNodes(&t);
 }
 

@@ -22,23 +22,15 @@ static int SolveAll(void **state)
   return 0;
 }
 
-TEST(PressureTimesGapVanishes)
+static void AssertNone(size_t offset)
 {
   for (int k = 0; k < PENETRATION_LOADS; k++)
-    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].product, 0.0, 1e-9);
+    for (int m = 0; m < MESHES; m++) assert_near(*(const double *)((const char *)&results[k][m] + offset), 0.0, 1e-9);
 }
 
-TEST(NoHatPulls)
-{
-  for (int k = 0; k < PENETRATION_LOADS; k++)
-    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].tension, 0.0, 1e-9);
-}
-
-TEST(NoHatOverlaps)
-{
-  for (int k = 0; k < PENETRATION_LOADS; k++)
-    for (int m = 0; m < MESHES; m++) assert_near(results[k][m].overlap, 0.0, 1e-9);
-}
+TEST_IS(PressureTimesGapVanishes, AssertNone(offsetof(Complementarity, product)));
+TEST_IS(NoHatPulls, AssertNone(offsetof(Complementarity, tension)));
+TEST_IS(NoHatOverlaps, AssertNone(offsetof(Complementarity, overlap)));
 
 TEST(PointwisePenetrationFallsWithTheMesh)
 {

@@ -95,15 +95,11 @@ TEST(FailureLeavesTheState)
 {
   LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad hopeless = ContactLoad(0.3, 0, 0, 0.3, 0, 0), load = ContactLoad(1, 0.1, 0, 1, 0.02, 0);
-  LamResponse fresh, failed, after;
-  OWNED(LamRVEState, LamRVEStateDestroy) point;
-  OWNED(LamRVE, LamRVEDestroy) rve;
+  const LamResponse fresh = SolveTissue(&micro, load);
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
+  LamResponse failed, after;
 
-  fresh = SolveTissue(&micro, load);
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(rve, &micro), 0);
-  assert_int_equal(LamRVESetUp(rve), 0);
-  assert_int_equal(LamRVEStateCreate(rve, &point), 0);
   assert_int_equal(LamRVESolve(rve, &hopeless, point, &failed), 0);
   assert_false(LamResponseHasFields(&failed));
   assert_int_equal(LamRVESolve(rve, &load, point, &after), 0);

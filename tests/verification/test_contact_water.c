@@ -74,8 +74,8 @@ static LamProcessState FollowPoint(const char text[], PetscBool cached)
   LamProcessReason reason;
   char message[LAM_PROCESS_MESSAGE];
   LamProcessState last;
+  OWNED(Tissue, CloseTissue) t;
   OWNED(LamProcess, LamProcessDestroy) process;
-  Tissue t;
 
   OpenTissue(text, 1, cached, &t);
   assert_int_equal(LamProcessCreate(t.scene, &process), 0);
@@ -83,7 +83,6 @@ static LamProcessState FollowPoint(const char text[], PetscBool cached)
   assert_int_equal(LamProcessSetMonitor(process, KeepPoint, &last), 0);
   assert_int_equal(LamProcessRun(process, &reason, message), 0);
   if (reason != LAM_PROCESS_DONE) fail_msg("%s", message);
-  CloseTissue(&t);
   return last;
 }
 
@@ -109,9 +108,9 @@ static LamBodyState FollowBody(const char text[], PetscBool cached, PetscReal *f
   char message[LAM_PROCESS_MESSAGE];
   LamBodyState last;
   PetscInt points;
+  OWNED(Tissue, CloseTissue) t;
   OWNED(LamMacro, LamMacroDestroy) macro;
   OWNED(LamBody, LamBodyDestroy) body;
-  Tissue t;
 
   OpenTissue(text, 9, cached, &t);
   assert_int_equal(LamMacroCreate(PETSC_COMM_SELF, &macro), 0);
@@ -125,7 +124,6 @@ static LamBodyState FollowBody(const char text[], PetscBool cached, PetscReal *f
   assert_int_equal(LamBodyRun(body, &reason, message), 0);
   if (reason != LAM_PROCESS_DONE) fail_msg("%s", message);
   *force = last.step.reaction[1][0];
-  CloseTissue(&t);
   return last;
 }
 
@@ -159,8 +157,8 @@ static LamMacroStep SolveSealedBody(const char text[], PetscBool cached)
   char message[LAM_MESSAGE_LENGTH];
   LamMacroReason reason;
   LamMacroStep last;
+  OWNED(Tissue, CloseTissue) t;
   OWNED(LamMacro, LamMacroDestroy) macro;
-  Tissue t;
 
   OpenTissue(text, 9, cached, &t);
   assert_int_equal(LamMacroCreate(PETSC_COMM_SELF, &macro), 0);
@@ -170,7 +168,6 @@ static LamMacroStep SolveSealedBody(const char text[], PetscBool cached)
   assert_int_equal(LamMacroSetMonitor(macro, KeepStep, &last), 0);
   assert_int_equal(LamMacroSolve(macro, &reason, message), 0);
   if (reason != LAM_MACRO_DONE) fail_msg("%s", message);
-  CloseTissue(&t);
   return last;
 }
 

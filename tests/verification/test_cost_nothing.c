@@ -156,10 +156,7 @@ TEST(OnlySealableLumensHaveUnknowns)
 
   micro.cells[0] = 2;
   open = NewRVE(&micro);
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &sealable), 0);
-  assert_int_equal(LamRVESetMicrostructure(sealable, &micro), 0);
-  assert_int_equal(LamRVESetSealable(sealable, PETSC_TRUE), 0);
-  assert_int_equal(LamRVESetUp(sealable), 0);
+  sealable = NewSealable(&micro);
   assert_int_equal(open->linear.n + 2, sealable->linear.n);
   assert_int_equal(open->length + 2, sealable->length);
   assert_int_equal(LamRVEDestroy(&open), 0);

@@ -48,17 +48,12 @@ static void SolveBody(LamScene *scene, LamMacroFields *fields)
 /* The same tissue sealed in the RVE solve. */
 static LamResponse SolveSealed(const LamScene *scene)
 {
+  OWNED(LamRVE, LamRVEDestroy) rve = NewSealable(&scene->micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) state = NewState(rve);
   LamLoad load = PlaneLoad(1, 0, 0, 1, scene->turgor);
-  OWNED(LamRVEState, LamRVEStateDestroy) state;
   LamResponse response;
   PetscReal water;
-  OWNED(LamRVE, LamRVEDestroy) rve;
 
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(rve, &scene->micro), 0);
-  assert_int_equal(LamRVESetSealable(rve, PETSC_TRUE), 0);
-  assert_int_equal(LamRVESetUp(rve), 0);
-  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
   assert_int_equal(LamRVEGetLumens(rve, state, &water), 0);
   assert_int_equal(LamRVESeal(rve, scene->water_bulk_modulus, &water), 0);

@@ -113,28 +113,26 @@ static void StopEverywhere(Case *c)
 TEST(StopsBonded)
 {
   const LamMicrostructure micro = DefaultTissue();
-  Case c = NewCase(&micro, PlaneLoad(1.1, 0.3, 0, 1, 0.1));
+  OWNED(Case, Destroy) c = NewCase(&micro, PlaneLoad(1.1, 0.3, 0, 1, 0.1));
 
   StopEverywhere(&c);
-  Destroy(&c);
 }
 
 /* Biaxial compression leaves a saddle: safe tier, softest mode. */
 TEST(StopsBuckling)
 {
   const LamMicrostructure micro = CoarseTissue(DefaultTissue());
-  Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0));
+  OWNED(Case, Destroy) c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0));
 
   assert_true(SolveCase(&c, 0).branch > 0);
   StopEverywhere(&c);
-  Destroy(&c);
 }
 
 TEST(StopsContact)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   LamLoad load = PlaneLoad(1.05, 0.2, 0, 1, 0.02 / TISSUE_STRESS);
-  Case c;
+  OWNED(Case, Destroy) c;
 
   load.cohesion = 0.005 / TISSUE_STRESS;
   c = NewCase(&micro, load);
@@ -142,27 +140,24 @@ TEST(StopsContact)
   assert_int_equal(LamRVEStateCopy(c.state, c.start), 0);
   c.load.F[1] += 0.02; /* from a state nearby */
   StopEverywhere(&c);
-  Destroy(&c);
 }
 
 /* Contact that compression makes buckle, and that is hard to find. */
 TEST(StopsContactBuckling)
 {
   const LamMicrostructure micro = CoarseTissue(ContactTissue(6, 2));
-  Case c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0.02 / TISSUE_STRESS));
+  OWNED(Case, Destroy) c = NewCase(&micro, PlaneLoad(0.9, 0, 0, 0.9, 0.02 / TISSUE_STRESS));
 
   StopEverywhere(&c);
-  Destroy(&c);
 }
 
 static void StopMixed(const LamMicrostructure *micro, MixedCase mixed)
 {
   static const double undeformed[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  Case c = NewCase(micro, PlaneLoad(1, 0, 0, 1, 0));
+  OWNED(Case, Destroy) c = NewCase(micro, PlaneLoad(1, 0, 0, 1, 0));
 
   MixedLoad(&mixed, undeformed, &c.load, &c.control);
   StopEverywhere(&c);
-  Destroy(&c);
 }
 
 TEST(StopsMixed)

@@ -45,6 +45,13 @@ static void Build(const LamMicrostructure *micro, LamDatabase *db)
     }
 }
 
+/* The family first: it borrows the databases. */
+static void Close(LamParametricDatabase *family, int n, LamDatabase databases[])
+{
+  CHECK(LamParametricDatabaseDestroy(family));
+  for (int i = 0; i < n; i++) CHECK(LamDatabaseClose(&databases[i]));
+}
+
 static LamMicrostructure Tissue(LamParametricAxis axis, PetscReal value)
 {
   LamMicrostructure micro = DefaultTissue();
@@ -74,7 +81,7 @@ static void CheckAxis(LamParametricAxis axis, const PetscReal values[KNOTS], Pet
 {
   LamDatabase databases[KNOTS];
   LamMicrostructure micro = Tissue(axis, between);
-  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
+  LamParametricDatabase family;
   LamParametricAxis found;
   PetscReal least, most;
 
@@ -98,7 +105,7 @@ static void CheckAxis(LamParametricAxis axis, const PetscReal values[KNOTS], Pet
     assert_true(LamStressError(answer.P, truth.P) < 2 * answer.error_estimate + ASKED / 10);
     assert_near(answer.lumen_fraction, truth.lumen_fraction, 1e-3);
   }
-  for (int i = 0; i < KNOTS; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+  Close(&family, KNOTS, databases);
 }
 
 TEST(walls_of_any_thickness)
@@ -131,16 +138,22 @@ TEST(matrices_of_any_kind)
   CheckAxis(LAM_FAMILY_MATRIX, values, 0.25);
 }
 
-TEST(at_a_knot_the_answer_is_its_database_s)
+/* C4/C1 = 8 and 10. */
+static void BuildPair(LamDatabase databases[2])
 {
-  LamDatabase databases[2];
-  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
-
   for (int i = 0; i < 2; i++) {
     const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
 
     Build(&micro, &databases[i]);
   }
+}
+
+TEST(at_a_knot_the_answer_is_its_database_s)
+{
+  LamDatabase databases[2];
+  LamParametricDatabase family;
+
+  BuildPair(databases);
   assert_int_equal(LamParametricDatabaseCreate(2, databases, &family), 0);
   for (int s = 0; s < STATES; s++) {
     LamResponse own, answer;
@@ -149,25 +162,21 @@ TEST(at_a_knot_the_answer_is_its_database_s)
     assert_int_equal(LamParametricDatabaseQuery(family, 8, &loads[s], INFINITY, &answer), 0);
     for (int i = 0; i < 9; i++) assert_near(answer.P[i], own.P[i], 1e-12);
   }
-  for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+  Close(&family, 2, databases);
 }
 
 TEST(beyond_the_knots_is_refused)
 {
   LamDatabase databases[2];
-  OWNED(LamParametricDatabase, LamParametricDatabaseDestroy) family;
+  LamParametricDatabase family;
   LamResponse answer;
 
-  for (int i = 0; i < 2; i++) {
-    const LamMicrostructure micro = Tissue(LAM_FAMILY_C4, i ? 10 : 8);
-
-    Build(&micro, &databases[i]);
-  }
+  BuildPair(databases);
   assert_int_equal(LamParametricDatabaseCreate(2, databases, &family), 0);
   assert_int_equal(LamParametricDatabaseQuery(family, 11, &loads[0], INFINITY, &answer), 0);
   assert_int_equal(answer.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(answer.reason, "C4/C1 = 11"));
-  for (int i = 0; i < 2; i++) assert_int_equal(LamDatabaseClose(&databases[i]), 0);
+  Close(&family, 2, databases);
 }
 
 TEST_GROUP(.petsc = 1);

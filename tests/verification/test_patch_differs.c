@@ -45,66 +45,22 @@ static LamLoad PatchLoad(void)
   return load;
 }
 
-/* What a response says of the energy: its derivative by a component of F, turgor or cohesion. */
-static double Slope(const LamResponse *r, int column)
-{
-  if (column == CONTACT_TURGOR) return r->energy_turgor;
-  return column == CONTACT_COHESION ? r->energy_cohesion : r->P[contact_components[column]];
-}
-
-static double Curvature(const LamResponse *r, int row, int column)
-{
-  if (column == CONTACT_TURGOR) return r->P_turgor[contact_components[row]];
-  if (column == CONTACT_COHESION) return r->P_cohesion[contact_components[row]];
-  return r->tangent[9 * contact_components[row] + contact_components[column]];
-}
-
-/* Fourth-order differences of the energy and of the stress in one column, from the state of `r`. */
-static void Differences(LamRVE rve, LamRVEState centre, const LamResponse *r, int column, double *slope,
-                        double curvature[5])
-{
-  static const double step[4] = {-2, -1, 1, 2}, weight[4] = {1, -8, 8, -1};
-  OWNED(LamRVEState, LamRVEStateDestroy) state;
-
-  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
-  *slope = 0;
-  for (int i = 0; i < 5; i++) curvature[i] = 0;
-  for (int k = 0; k < 4; k++) {
-    const double w = weight[k] / (12.0 * CONTACT_STEP), moved_by = step[k] * CONTACT_STEP;
-    LamLoad load = r->load;
-    LamResponse moved;
-
-    if (column == CONTACT_TURGOR)
-      load.turgor += moved_by;
-    else if (column == CONTACT_COHESION)
-      load.cohesion += moved_by;
-    else
-      load.F[contact_components[column]] += moved_by;
-    assert_int_equal(LamRVEStateCopy(centre, state), 0);
-    assert_int_equal(LamRVESolve(rve, &load, state, &moved), 0);
-    assert_int_equal(moved.status, LAM_CONVERGED);
-    *slope += w * moved.energy;
-    for (int i = 0; i < 5; i++) curvature[i] += w * moved.P[contact_components[i]];
-  }
-}
-
 static void CheckDerivatives(const LamMicrostructure *micro)
 {
-  const LamLoad load = PatchLoad();
-  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(micro);
-  OWNED(LamRVEState, LamRVEStateDestroy) centre = NewState(rve);
-  LamResponse r;
+  const ContactState state = {.micro = *micro, .load = PatchLoad(), .step = CONTACT_STEP};
+  ContactDerivativeError e;
+  ContactSweep sweep;
 
-  assert_int_equal(LamRVESolve(rve, &load, centre, &r), 0);
-  assert_int_equal(r.status, LAM_CONVERGED);
-  for (int column = 0; column < CONTACT_COLUMNS; column++) {
-    double slope, curvature[5];
-
-    if (column == CONTACT_COHESION && micro->interface == LAM_INTERFACE_BONDED) continue; /* it does not act */
-    Differences(rve, centre, &r, column, &slope, curvature);
-    assert_near(Slope(&r, column), slope, 1e-8);
-    for (int i = 0; i < 5; i++) assert_near(Curvature(&r, i, column), curvature[i], 1e-7 * TangentScale(&r));
-  }
+  CHECK(SweepContact(&state, &sweep));
+  assert_int_equal(sweep.response.status, LAM_CONVERGED);
+  assert_int_equal(sweep.switches, 0);
+  e = DerivativeError(&sweep);
+  assert_near(e.stress, 0.0, 1e-8);
+  assert_near(e.turgor, 0.0, 1e-8);
+  assert_near(e.cohesion, 0.0, 1e-8);
+  assert_near(e.tangent, 0.0, 1e-7);
+  assert_near(e.turgor_coupling, 0.0, 1e-7 * TangentScale(&sweep.response));
+  assert_near(e.cohesion_coupling, 0.0, 1e-7 * TangentScale(&sweep.response));
 }
 
 TEST(DerivativesOfBondedPatches)

@@ -10,17 +10,6 @@
 #define POINTS 3
 static const PetscInt points[POINTS] = {0, 1, 2};
 
-static LamRVE NewSealable(const LamMicrostructure *micro)
-{
-  LamRVE rve;
-
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(rve, micro), 0);
-  assert_int_equal(LamRVESetSealable(rve, PETSC_TRUE), 0);
-  assert_int_equal(LamRVESetUp(rve), 0);
-  return rve;
-}
-
 static void Ask(LamResponder responder, const LamLoad loads[POINTS], LamResponse responses[POINTS])
 {
   assert_int_equal(LamResponderRespond(responder, POINTS, loads, points, responses), 0);
