@@ -7,7 +7,6 @@
 #include "clock.h"
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* An audit passes if at most this fraction of the responses exceeds the accuracy, and none exceeds FAR times it. */
@@ -52,30 +51,24 @@ typedef struct {
 
 /* ---- figures ---- */
 
-static int Ascending(const void *a, const void *b)
+/* Of the member at `offset`, over all responses in which it is known. */
+static PetscErrorCode FindQuantiles(const LamAudit *a, size_t offset, PetscInt count, PetscReal quantiles[])
 {
-  const PetscReal x = *(const PetscReal *)a, y = *(const PetscReal *)b;
-
-  return (x > y) - (x < y);
-}
-
-/* The member at `offset` of all responses in which it is known, sorted. */
-static PetscInt Collect(const LamAudit *a, size_t offset, PetscReal values[])
-{
+  PetscReal *values;
   PetscInt n = 0;
 
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(a->answered, &values));
   for (PetscInt i = 0; i < a->answered; i++) {
     const PetscReal value = *(const PetscReal *)(const void *)((const char *)&a->results[i] + offset);
 
     if (a->results[i].compared && isfinite(value)) values[n++] = value;
   }
-  if (n) qsort(values, (size_t)n, sizeof(*values), Ascending);
-  return n;
-}
-
-static PetscReal Quantile(PetscInt n, const PetscReal sorted[], PetscReal share)
-{
-  return n ? sorted[PetscMin(n - 1, (PetscInt)(share * (PetscReal)n))] : NAN;
+  PetscCall(PetscSortReal(n, values));
+  for (PetscInt q = 0; q < count; q++)
+    quantiles[q] = n ? values[PetscMin(n - 1, (PetscInt)(Shares[q] * (PetscReal)n))] : NAN;
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
 }
 
 static void JudgeEstimate(const LamAudit *a, const LamAudited *result, Summary *s)
@@ -91,19 +84,10 @@ static void JudgeEstimate(const LamAudit *a, const LamAudited *result, Summary *
 
 static PetscErrorCode Summarise(const LamAudit *a, Summary *s)
 {
-  PetscReal *values;
-  PetscInt n;
-
   PetscFunctionBeginUser;
   *s = (Summary){.worst = -1};
-  PetscCall(PetscMalloc1(a->answered, &values));
-  for (int f = 0; f < FIGURE_COUNT; f++) {
-    n = Collect(a, Figures[f].offset, values);
-    for (int q = 0; q < SHARE_COUNT; q++) s->quantiles[f][q] = Quantile(n, values, Shares[q]);
-  }
-  n = Collect(a, offsetof(LamAudited, query_seconds), values);
-  s->query_seconds = Quantile(n, values, 0.5);
-  PetscCall(PetscFree(values));
+  for (int f = 0; f < FIGURE_COUNT; f++) PetscCall(FindQuantiles(a, Figures[f].offset, SHARE_COUNT, s->quantiles[f]));
+  PetscCall(FindQuantiles(a, offsetof(LamAudited, query_seconds), 1, &s->query_seconds)); /* the median */
   for (PetscInt i = 0; i < a->answered; i++) {
     const LamAudited *result = &a->results[i];
 

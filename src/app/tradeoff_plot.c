@@ -392,17 +392,15 @@ static PetscErrorCode DrawPage(const char path[], const Groups *groups, PetscInt
 PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[])
 {
   PetscInt n = 0;
-  Groups *groups;
-  Panel *panels;
+  Groups groups;
+  Panel panels[LAM_ERROR_KIND_COUNT];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&groups));
-  PetscCall(PetscMalloc1(LAM_ERROR_KIND_COUNT, &panels));
-  FindGroups(t, groups);
+  FindGroups(t, &groups);
   for (int k = 0; k < LAM_ERROR_KIND_COUNT; k++) {
     Panel *p = &panels[n];
 
-    *p = PanelOf(t, groups, (LamErrorKind)k);
+    *p = PanelOf(t, &groups, (LamErrorKind)k);
     PetscCall(FindPoints(p));
     SetLimits(p);
     if (p->n)
@@ -410,9 +408,7 @@ PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[])
     else
       PetscCall(PetscFree(p->points));
   }
-  PetscCall(DrawPage(path, groups, n, panels));
+  PetscCall(DrawPage(path, &groups, n, panels));
   for (PetscInt k = 0; k < n; k++) PetscCall(PetscFree(panels[k].points));
-  PetscCall(PetscFree(panels));
-  PetscCall(PetscFree(groups));
   PetscFunctionReturn(0);
 }
