@@ -50,9 +50,10 @@ LAM_EXPORT PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
 /* Prints each Newton iteration to stderr (residual, step, negative eigenvalues). Off by default. */
 LAM_EXPORT PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on);
 /*
-  Interrupts solves: `interrupt` is called before every factorisation. If it returns PETSC_TRUE the solve returns with
-  status LAM_OUT_OF_REACH, reason "stopped before it was solved", the state unchanged, and no error. It may use MPI on
-  communicators other than the RVE's, but not the RVE. NULL: never (default).
+  Interrupts solves: `interrupt` is called before every factorisation, and at the start of a solve that follows an
+  interrupted one. If it returns PETSC_TRUE the solve returns with status LAM_OUT_OF_REACH, reason "stopped before it
+  was solved", the state unchanged, and no error. It may use MPI on communicators other than the RVE's, but not the RVE.
+  NULL: never (default).
 */
 LAM_EXPORT PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx), void *ctx);
 /* Allows the lumens to be sealed, by reserving rows for their pressures in the matrix. Call before LamRVESetUp.
