@@ -108,7 +108,7 @@ LAM_EXPORT PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Optio
 /* ---- tissue that changes in time ---- */
 
 typedef struct {
-  LamFE2Response response;              /* as in LamFE2Options; at a material point a cache needs no database */
+  LamFE2Response response;              /* as in LamFE2Options, but a cache needs no database */
   const char *database_path, *out_path; /* likewise */
   PetscInt frames; /* at a material point: number of states whose cells are stored, evenly spread; 0: events, ends */
   LamReporter reporter;

@@ -24,7 +24,8 @@ static PetscErrorCode Connect(LamProcessStudy *study, LamResponder *responder)
   PetscCall(LamFE2PrepareTissue(response, tissue));
   study->scene->micro = tissue->scene.micro;
   PetscCall(LamFE2ConnectTissue(response, tissue, responder));
-  if (!response->stopped && response->response == LAM_FE2_CACHE) PetscCall(LamFE2OpenTissueFile(tissue));
+  if (!response->stopped && response->response == LAM_FE2_CACHE && response->database_path)
+    PetscCall(LamFE2OpenTissueFile(tissue));
   PetscFunctionReturn(0);
 }
 

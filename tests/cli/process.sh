@@ -54,6 +54,7 @@ process:
   kinetics: [{of: lamella, law: first_order, rate: 0.05 /h}]
 YAML
 expect 0 "$lamella" process loosening.yaml -o loosening.h5
+expect 0 "$lamella" process loosening.yaml --response cache # without a file
 expect 0 "$lamella" plot loosening.h5 --map map.h5 -o way.svg
 [ -s way.svg ] || fail "no picture of the way"
 
