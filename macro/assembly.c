@@ -102,7 +102,7 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
 
 /* Whether a stop was requested on any rank: a signal may reach only one of them. While this rank waits for the others
    it calls macro->stop(), through which they may learn of a request. */
-static PetscErrorCode AskStop(LamMacro macro)
+static PetscErrorCode CheckStop(LamMacro macro)
 {
   const struct timespec pause = {0, 200000};
   MPI_Request request;
@@ -149,7 +149,7 @@ static PetscErrorCode CheckChange(LamMacro macro, PetscBool *ok)
 
 /* Queries the responder. Tissue whose moduli are all s times those of the responder's has the energy s Psi(F, p / s, g
    / s). */
-static PetscErrorCode Ask(LamMacro macro)
+static PetscErrorCode QueryResponder(LamMacro macro)
 {
   LamResponder responder = macro->responder;
   const PetscInt n = macro->point_count;
@@ -189,8 +189,8 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   if (known) PetscFunctionReturn(0);
   PetscCall(CheckChange(macro, ok));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(Ask(macro));
-  PetscCall(AskStop(macro));
+  PetscCall(QueryResponder(macro));
+  PetscCall(CheckStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     PetscCall(LamMacroKeepSealed(macro, p));
     KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);

@@ -62,8 +62,8 @@ static void Project(const LamResponse *response, Energy *energy)
 }
 
 /* Psi and its derivatives at F = 1 + (e11, e12, e22), the same on all ranks. */
-static PetscErrorCode Ask(LamMacro macro, PetscMPIInt rank, PetscBool mine, PetscInt point,
-                          const PetscReal e[SYMMETRIC], Energy *energy)
+static PetscErrorCode QueryAt(LamMacro macro, PetscMPIInt rank, PetscBool mine, PetscInt point,
+                              const PetscReal e[SYMMETRIC], Energy *energy)
 {
   const LamLoad load = {{1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, 1},
                         macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
@@ -121,7 +121,7 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
   *found = PETSC_FALSE;
   PetscCall(FindMiddle(macro, &rank, &mine, &point));
   PetscCall(PetscArrayzero(e, SYMMETRIC));
-  PetscCall(Ask(macro, rank, mine, point, e, &now));
+  PetscCall(QueryAt(macro, rank, mine, point, e, &now));
   for (PetscInt it = 0; it < ITERATIONS && now.known && share > 1e-3; it++) {
     PetscReal trial[SYMMETRIC];
     scale = PetscMax(scale, Stress(&now));
@@ -129,7 +129,7 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
     if (*found) break;
     PetscCall(Descend(&now, step));
     for (int i = 0; i < SYMMETRIC; i++) trial[i] = e[i] + share * step[i];
-    PetscCall(Ask(macro, rank, mine, point, trial, &next));
+    PetscCall(QueryAt(macro, rank, mine, point, trial, &next));
     /* near convergence the decrease of the energy is below rounding */
     if (!next.known || (next.energy > now.energy && Stress(&next) > 0.5 * Stress(&now))) {
       share *= 0.5;

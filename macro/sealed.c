@@ -266,7 +266,7 @@ PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point)
   if (!PetscIsInfOrNanReal(sum + sealed->lumen)) PetscFunctionReturn(0);
   response->status = LAM_OUT_OF_REACH;
   PetscCall(PetscStrncpy(response->reason,
-                         "the answer does not know its derivatives by the turgor, which sealed "
+                         "the response has no derivatives by the turgor, which sealed "
                          "cells need",
                          sizeof(response->reason)));
   PetscFunctionReturn(0);

@@ -19,7 +19,7 @@ static PetscErrorCode CheckTurgor(const LamScene *scene)
   for (PetscInt k = 0; k < spec->surroundings_count && !spec->has_water; k++)
     PetscCheck(spec->surroundings[k].turgor == scene->turgor || scene->turgor > 0, PETSC_COMM_SELF,
                PETSC_ERR_USER_INPUT,
-               "%s: process.surroundings: turgor in a body is told as a multiple of rve.turgor, which is not above 0; "
+               "%s: process.surroundings: turgor in a body is a multiple of rve.turgor, which is not above 0; "
                "write the largest pressure there",
                scene->path);
   PetscFunctionReturn(0);
@@ -212,7 +212,7 @@ static PetscErrorCode EnterSegment(LamBody body, PetscBool *ok)
 /* ---- time loop ---- */
 
 /* Reports events that have occurred at the present state, such as those passed in a jump at the start of a segment. */
-static PetscErrorCode TellPassed(LamBody body)
+static PetscErrorCode ReportPassed(LamBody body)
 {
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
   LamEvent events[LAM_EVENT_COUNT];
@@ -222,7 +222,7 @@ static PetscErrorCode TellPassed(LamBody body)
   PetscFunctionBeginUser;
   PetscCall(LamBodyExcess(body, n, events, excess));
   for (PetscInt k = 0; k < n; k++) happened[events[k]] = (PetscBool)(excess[k] > 0);
-  PetscCall(LamBodyTell(body, happened));
+  PetscCall(LamBodyReport(body, happened));
   PetscFunctionReturn(0);
 }
 
@@ -240,14 +240,14 @@ static PetscErrorCode FollowSegment(LamBody body, PetscBool *ok)
     process->segment = before;
     PetscFunctionReturn(0);
   }
-  PetscCall(TellPassed(body));
+  PetscCall(ReportPassed(body));
   if (process->next_output <= process->tissue.time) {
-    PetscCall(LamBodyTell(body, NULL));
+    PetscCall(LamBodyReport(body, NULL));
     LamProcessNextOutput(process);
   }
   if (process->segment.end > process->segment.start) PetscCall(LamBodyIntegrate(body, happened, ok));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(LamBodyTell(body, happened));
+  PetscCall(LamBodyReport(body, happened));
   LamProcessEndSegment(process, none);
   PetscFunctionReturn(0);
 }
@@ -290,7 +290,7 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
 }
 
 /* Reports the last state if the run ends early. */
-static PetscErrorCode TellLast(LamBody body)
+static PetscErrorCode ReportLast(LamBody body)
 {
   char why[sizeof(body->process->trouble)];
   PetscBool ok;
@@ -298,7 +298,7 @@ static PetscErrorCode TellLast(LamBody body)
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(why, body->process->trouble, sizeof(why)));
   PetscCall(LamBodySettle(body, LamBodyAtOnce(body), body->process->tissue.time, &ok));
-  if (ok) PetscCall(LamBodyTell(body, NULL));
+  if (ok) PetscCall(LamBodyReport(body, NULL));
   PetscCall(PetscStrncpy(body->process->trouble, why, sizeof(why)));
   PetscFunctionReturn(0);
 }
@@ -314,7 +314,7 @@ PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[L
   while (ok && !process->stopped && process->tissue.time < process->spec->duration) PetscCall(FollowSegment(body, &ok));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
   if (*reason != LAM_PROCESS_ENDED || message[0]) PetscFunctionReturn(0);
-  if (process->tissue.time > 0) PetscCall(TellLast(body));
+  if (process->tissue.time > 0) PetscCall(ReportLast(body));
   PetscCall(PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,
                           process->trouble));
   PetscFunctionReturn(0);

@@ -141,7 +141,7 @@ static PetscErrorCode Locate(LamBody body, LamEvent event, LamBodyState *state)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TellEvent(LamBody body, LamEvent event)
+static PetscErrorCode ReportEvent(LamBody body, LamEvent event)
 {
   const LamProcess process = body->process;
   LamBodyState state = {.number = body->told++,
@@ -165,19 +165,19 @@ static PetscErrorCode TellEvent(LamBody body, LamEvent event)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT])
+PetscErrorCode LamBodyReport(LamBody body, const PetscBool happened[LAM_EVENT_COUNT])
 {
   LamProcess process = body->process;
 
   PetscFunctionBeginUser;
-  if (!happened) PetscCall(TellEvent(body, LAM_EVENT_COUNT));
+  if (!happened) PetscCall(ReportEvent(body, LAM_EVENT_COUNT));
   for (PetscInt k = 0; k < LAM_EVENT_COUNT && happened; k++) {
     if (!happened[k]) continue;
     if (k == LAM_EVENT_TURGOR_LOST || k == LAM_EVENT_TURGOR_FOUND)
       process->plasmolysed = (PetscBool)(k == LAM_EVENT_TURGOR_LOST); /* at some point */
     else
       process->found[k] = PETSC_TRUE;
-    PetscCall(TellEvent(body, (LamEvent)k));
+    PetscCall(ReportEvent(body, (LamEvent)k));
   }
   PetscFunctionReturn(0);
 }

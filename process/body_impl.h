@@ -93,7 +93,7 @@ PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], 
 /* Turgor below this counts as lost. */
 PetscReal LamBodyNoTurgor(LamBody body);
 /* Reports the present state, for each of the events; NULL: at an output time. */
-PetscErrorCode LamBodyTell(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
+PetscErrorCode LamBodyReport(LamBody body, const PetscBool happened[LAM_EVENT_COUNT]);
 
 /* ---- body_integrate.c ---- */
 PetscErrorCode LamBodyIntegrate(LamBody body, PetscBool happened[LAM_EVENT_COUNT], PetscBool *ok);

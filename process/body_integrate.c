@@ -468,7 +468,7 @@ static PetscErrorCode SettleOutput(Integration *in, PetscReal end, PetscReal out
 }
 
 /* Reports the outputs up to a time that the integrator has passed. */
-static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
+static PetscErrorCode ReportUpTo(Integration *in, PetscReal time, PetscBool *ok)
 {
   LamBody body = in->body;
   LamProcess process = body->process;
@@ -484,7 +484,7 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time, PetscBool *ok)
       PetscCall(SettleOutput(in, time, at, ok));
     }
     if (!*ok) break;
-    PetscCall(LamBodyTell(body, NULL));
+    PetscCall(LamBodyReport(body, NULL));
     LamProcessNextOutput(process);
   }
   PetscFunctionReturn(0);
@@ -525,7 +525,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
     if (flag < 0) break;
     process->counts.steps++;
     PetscCall(TakeStep(in, t));
-    PetscCall(TellUpTo(in, t, ok));
+    PetscCall(ReportUpTo(in, t, ok));
     if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->base.y)));
     if (process->stopped) break;
   }

@@ -18,9 +18,9 @@ PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[],
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
-  if (!process->walls_alike && memcmp(process->told_walls, ratio, sizeof(ratio)))
+  if (!process->walls_alike && memcmp(process->passed_walls, ratio, sizeof(ratio)))
     PetscCall(LamMacroForget(body->macro));
-  PetscCall(LamProcessTellWalls(process, ratio));
+  PetscCall(LamProcessPassWalls(process, ratio));
   if (process->spec->has_water) LamBodyDrives(body);
   PetscFunctionReturn(0);
 }

@@ -61,18 +61,20 @@ static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
                      a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
 }
 
-PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
+PetscErrorCode LamProcessPassWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
 {
   PetscFunctionBeginUser;
-  if (process->walls_alike || !memcmp(process->told_walls, ratio, sizeof(process->told_walls))) PetscFunctionReturn(0);
+  if (process->walls_alike || !memcmp(process->passed_walls, ratio, sizeof(process->passed_walls)))
+    PetscFunctionReturn(0);
   PetscCall(process->set_walls(process->walls_ctx, ratio));
-  PetscCall(PetscArraycpy(process->told_walls, ratio, LAM_WALL_PARAMETER_COUNT));
+  PetscCall(PetscArraycpy(process->passed_walls, ratio, LAM_WALL_PARAMETER_COUNT));
   process->last_known = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
 /* Queries a responder; the response is in units of C1 + C2 at the start. */
-static PetscErrorCode Ask(LamProcess process, LamResponder responder, const LamEvaluation *e, LamResponse *response)
+static PetscErrorCode QueryResponder(LamProcess process, LamResponder responder, const LamEvaluation *e,
+                                     LamResponse *response)
 {
   const PetscInt point = 0;
   LamLoad own = e->load;
@@ -90,13 +92,13 @@ static PetscErrorCode Ask(LamProcess process, LamResponder responder, const LamE
 PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *e)
 {
   PetscFunctionBeginUser;
-  if (!process->judge || !e->ok || e->response.indicators_trusted) PetscFunctionReturn(0);
-  if (!process->judged_known || process->judged_scale != e->walls ||
-      memcmp(&process->judged.load, &e->load, sizeof(LamLoad)))
-    PetscCall(Ask(process, process->judge, e, &process->judged));
-  process->judged_scale = e->walls;
-  process->judged_known = LamResponseHasFields(&process->judged);
-  if (process->judged_known) e->response = process->judged;
+  if (!process->reference || !e->ok || e->response.indicators_trusted) PetscFunctionReturn(0);
+  if (!process->reference_response_known || process->reference_response_scale != e->walls ||
+      memcmp(&process->reference_response.load, &e->load, sizeof(LamLoad)))
+    PetscCall(QueryResponder(process, process->reference, e, &process->reference_response));
+  process->reference_response_scale = e->walls;
+  process->reference_response_known = LamResponseHasFields(&process->reference_response);
+  if (process->reference_response_known) e->response = process->reference_response;
   PetscFunctionReturn(0);
 }
 
@@ -116,13 +118,13 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamProcessTellWalls(process, ratio));
+  PetscCall(LamProcessPassWalls(process, ratio));
   if (SameQuestion(process, e)) {
     e->response = process->last.response;
     e->ok = process->last.ok;
     PetscFunctionReturn(0);
   }
-  PetscCall(Ask(process, process->responder, e, &e->response));
+  PetscCall(QueryResponder(process, process->responder, e, &e->response));
   e->ok = LamResponseHasFields(&e->response);
   if (!e->ok)
     PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "%s: %.150s",

@@ -209,7 +209,7 @@ static PetscErrorCode Describe(LamProcess process, const LamProcessTissue *tissu
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
+PetscErrorCode LamProcessReport(LamProcess process, const LamProcessTissue *tissue, LamEvent event)
 {
   LamProcessState state;
 

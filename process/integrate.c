@@ -353,7 +353,7 @@ static void Destroy(Integration *in)
 /* ---- time loop ---- */
 
 /* Reports the outputs up to a time that the integrator has passed. */
-static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
+static PetscErrorCode ReportUpTo(Integration *in, PetscReal time)
 {
   LamProcess process = in->process;
   N_Vector y = N_VClone(in->base.y);
@@ -365,7 +365,7 @@ static PetscErrorCode TellUpTo(Integration *in, PetscReal time)
                                         ? Unpack(in, process->next_output, y)
                                         : process->tissue;
 
-    ierr = LamProcessTell(process, &tissue, LAM_EVENT_COUNT);
+    ierr = LamProcessReport(process, &tissue, LAM_EVENT_COUNT);
     LamProcessNextOutput(process);
   }
   N_VDestroy(y);
@@ -387,7 +387,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
     if (flag < 0) break;
     process->counts.steps++;
     PetscCall(LamResponderAccept(process->responder));
-    PetscCall(TellUpTo(in, t));
+    PetscCall(ReportUpTo(in, t));
     process->tissue = Unpack(in, t, in->base.y);
     if (t >= process->segment.end) break;
   }

@@ -71,10 +71,10 @@ PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponder responder
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder judge)
+PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder reference)
 {
   PetscFunctionBeginUser;
-  process->judge = judge;
+  process->reference = reference;
   PetscFunctionReturn(0);
 }
 
@@ -184,7 +184,7 @@ static PetscErrorCode Happen(LamProcess process, const PetscBool happened[LAM_EV
   for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) {
     if (!happened[k]) continue;
     Note(process, (LamEvent)k);
-    PetscCall(LamProcessTell(process, &process->tissue, (LamEvent)k));
+    PetscCall(LamProcessReport(process, &process->tissue, (LamEvent)k));
     if (k == LAM_EVENT_LIMIT) *ends = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
@@ -245,7 +245,7 @@ static PetscErrorCode ChangeMembranes(LamProcess process, PetscBool *ok)
   Note(process, event);
   KeepTurgor(process);
   PetscCall(LamProcessSettle(process, Kind(process), &here, ok));
-  if (*ok) PetscCall(LamProcessTell(process, &process->tissue, event));
+  if (*ok) PetscCall(LamProcessReport(process, &process->tissue, event));
   PetscFunctionReturn(0);
 }
 
@@ -297,14 +297,14 @@ static PetscErrorCode Pass(LamProcess process, PetscReal time)
 }
 
 /* Reports outputs passed in a snap, with the state before it. */
-static PetscErrorCode TellBefore(LamProcess process, const LamProcessTissue *before)
+static PetscErrorCode ReportBefore(LamProcess process, const LamProcessTissue *before)
 {
   PetscFunctionBeginUser;
   while (process->next_output < process->tissue.time) {
     LamProcessTissue tissue = *before;
 
     tissue.time = process->next_output;
-    PetscCall(LamProcessTell(process, &tissue, LAM_EVENT_COUNT));
+    PetscCall(LamProcessReport(process, &tissue, LAM_EVENT_COUNT));
     LamProcessNextOutput(process);
   }
   PetscFunctionReturn(0);
@@ -336,8 +336,8 @@ static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
   }
   if (*ok) {
     process->snaps++;
-    PetscCall(TellBefore(process, &before));
-    PetscCall(LamProcessTell(process, &process->tissue, LAM_EVENT_SNAP));
+    PetscCall(ReportBefore(process, &before));
+    PetscCall(LamProcessReport(process, &process->tissue, LAM_EVENT_SNAP));
   } else {
     process->tissue = before;
     PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
@@ -421,7 +421,7 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
 /* ---- time loop ---- */
 
 /* Reports the last state if the run ends early. */
-static PetscErrorCode TellLast(LamProcess process)
+static PetscErrorCode ReportLast(LamProcess process)
 {
   char why[sizeof(process->trouble)];
   LamEvaluation e;
@@ -429,7 +429,7 @@ static PetscErrorCode TellLast(LamProcess process)
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(why, process->trouble, sizeof(why)));
   PetscCall(EvaluateTissue(process, &e));
-  if (e.ok) PetscCall(LamProcessTell(process, &process->tissue, LAM_EVENT_COUNT));
+  if (e.ok) PetscCall(LamProcessReport(process, &process->tissue, LAM_EVENT_COUNT));
   PetscCall(PetscStrncpy(process->trouble, why, sizeof(why)));
   PetscFunctionReturn(0);
 }
@@ -457,7 +457,7 @@ PetscErrorCode LamProcessRun(LamProcess process, LamProcessReason *reason, char 
   PetscCall(Start(process, &ok));
   while (ok && !ends && !process->stopped && process->tissue.time < process->spec->duration)
     PetscCall(FollowSegment(process, &ok, &ends));
-  if (!ok && !process->stopped && process->tissue.time > 0) PetscCall(TellLast(process));
+  if (!ok && !process->stopped && process->tissue.time > 0) PetscCall(ReportLast(process));
   *reason = process->stopped ? LAM_PROCESS_STOPPED : ok && !ends ? LAM_PROCESS_DONE : LAM_PROCESS_ENDED;
   if (*reason == LAM_PROCESS_ENDED)
     PetscCall(PetscSNPrintf(message, LAM_PROCESS_MESSAGE, "ended at %.6g s: %s", (double)process->tissue.time,

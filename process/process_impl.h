@@ -75,10 +75,10 @@ struct LamProcess_s {
   const LamScene *scene; /* borrowed */
   const LamProcessSpec *spec;
   LamResponder responder; /* borrowed */
-  LamResponder judge;     /* borrowed; NULL: none */
+  LamResponder reference; /* borrowed; NULL: none */
   PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
   void *walls_ctx; /* borrowed */
-  PetscReal told_walls[LAM_WALL_PARAMETER_COUNT];
+  PetscReal passed_walls[LAM_WALL_PARAMETER_COUNT];
   LamProcessMonitor monitor;
   void *monitor_ctx; /* borrowed */
   PetscBool (*stop)(void);
@@ -103,9 +103,9 @@ struct LamProcess_s {
   LamEvaluation last;   /* last evaluation for which the responder was queried */
   PetscReal last_scale; /* wall factor of that evaluation */
   PetscBool last_known;
-  LamResponse judged; /* last response of the reference responder, valid if judged_known */
-  PetscBool judged_known;
-  PetscReal judged_scale;
+  LamResponse reference_response; /* last one of the reference responder, valid if reference_response_known */
+  PetscBool reference_response_known;
+  PetscReal reference_response_scale;
   PetscBool stopped;
   PetscErrorCode error; /* of the library, raised inside IDA */
   char trouble[192];    /* why a state has no response */
@@ -152,7 +152,7 @@ void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[
                           PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
 /* Passes changed ratios of the moduli to set_walls, if moduli do not change by a common factor. A new ratio invalidates
    the stored response. */
-PetscErrorCode LamProcessTellWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
+PetscErrorCode LamProcessPassWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
 /* Properties and response at a time of the present segment; evaluation->ok: the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);
@@ -205,7 +205,7 @@ PetscReal LamProcessMeasureExcess(LamProcess process, LamEvent event, const LamP
 PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluation *evaluation, PetscReal water,
                            PetscReal turgor);
 /* Reports a state to the monitor. */
-PetscErrorCode LamProcessTell(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
+PetscErrorCode LamProcessReport(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
 /* Advances to the next output time; infinite after the last one. */
 void LamProcessNextOutput(LamProcess process);
 

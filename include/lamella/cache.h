@@ -20,8 +20,8 @@ typedef struct {
 } LamNodeSolver;
 
 /*
-  database only (solver NULL): a query that the database cannot answer to the accuracy is LAM_OUT_OF_REACH, with the
-  table's reason.
+  database only (solver NULL): a query that the database cannot respond to with the accuracy is LAM_OUT_OF_REACH, with
+  the table's reason.
 
   cache (solver given): the states that the database lacks for the queries of one `respond` are gathered over `comm`,
   solved and added to the database of every rank: nodes of its grid where they help, otherwise the queried states. The

@@ -83,7 +83,7 @@ LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponde
   A second responder that solves. It replaces responses whose indicators are not trusted (indicators_trusted), for
   events and output. Borrows it; NULL: such responses are used and reported as not trusted.
 */
-LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder judge);
+LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder reference);
 /*
   Sets the callback for walls whose moduli do not change by a common factor: before queries `set` receives each
   parameter over its initial value, moduli without the common factor. Without it such a process is

@@ -152,37 +152,38 @@ typedef struct {
   PetscInt branch;
   Outcome end; /* of the last step tried */
   LamKinking kinking;
-} Way;
+} Continuation;
 
-static PetscReal LeastStep(const Way *way)
+static PetscReal LeastStep(const Continuation *path)
 {
-  return LamIsKinking(&way->kinking) ? LAM_KINKED_SUBSTEP : MIN_SUBSTEP;
+  return LamIsKinking(&path->kinking) ? LAM_KINKED_SUBSTEP : MIN_SUBSTEP;
 }
 
 /* Continuation from `start` to `load`; y_from: in, positions at `start`; out, the last stable ones. */
-static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load, Way *way)
+static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *start, const LamLoad *load,
+                               Continuation *path)
 {
   LamLoad at = *start;
   PetscReal step = 0.25;
 
   PetscFunctionBeginUser;
-  LamWatchKinks(rve, start, y_from, 0.0, &way->kinking);
-  while (way->between[0] < 1.0 && step >= LeastStep(way) && LamMayIterate(rve)) {
-    const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(way));
-    const PetscReal t = PetscMin(1.0, way->between[0] + step);
+  LamWatchKinks(rve, start, y_from, 0.0, &path->kinking);
+  while (path->between[0] < 1.0 && step >= LeastStep(path) && LamMayIterate(rve)) {
+    const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(path));
+    const PetscReal t = PetscMin(1.0, path->between[0] + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
-    PetscInt branch = way->branch;
+    PetscInt branch = path->branch;
 
-    PetscCall(Step(rve, y_from, &at, &next, smallest, &branch, &way->end));
-    if (IsStable(&way->end)) {
+    PetscCall(Step(rve, y_from, &at, &next, smallest, &branch, &path->end));
+    if (IsStable(&path->end)) {
       PetscCall(PetscArraycpy(y_from, rve->y, rve->length));
       at = next;
-      way->between[0] = t;
-      way->branch = branch;
-      LamWatchKinks(rve, &next, y_from, t, &way->kinking);
+      path->between[0] = t;
+      path->branch = branch;
+      LamWatchKinks(rve, &next, y_from, t, &path->kinking);
       step = PetscMin(2.0 * step, 1.0);
     } else {
-      way->between[1] = t;
+      path->between[1] = t;
       step *= 0.5;
     }
   }
@@ -190,19 +191,19 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
 }
 
 /* Status and reason if the path ends before the load. */
-static PetscErrorCode EndOfWay(LamRVE rve, const Way *way, LamResponse *response)
+static PetscErrorCode EndOfPath(LamRVE rve, const Continuation *path, LamResponse *response)
 {
   const PetscBool out_of_work = (PetscBool)(rve->work.iterations >= rve->budget);
 
   PetscFunctionBeginUser;
-  if (way->end.collapsed >= 0 && !out_of_work)
-    PetscCall(LamRefuseCollapse(way->end.collapsed, way->between, LAM_NO_EQUILIBRIUM, response));
-  else if (LamIsKinking(&way->kinking))
-    PetscCall(LamRefuseKinks(&way->kinking, way->between[0], LAM_NO_EQUILIBRIUM, response));
+  if (path->end.collapsed >= 0 && !out_of_work)
+    PetscCall(LamRefuseCollapse(path->end.collapsed, path->between, LAM_NO_EQUILIBRIUM, response));
+  else if (LamIsKinking(&path->kinking))
+    PetscCall(LamRefuseKinks(&path->kinking, path->between[0], LAM_NO_EQUILIBRIUM, response));
   else
     PetscCall(LamRefuse(response, LAM_NOT_CONVERGED,
                         "no equilibrium found beyond %.4g of the way from the state before, after %d iterations%s",
-                        (double)way->between[0], (int)rve->work.iterations,
+                        (double)path->between[0], (int)rve->work.iterations,
                         out_of_work ? ": give states in between" : " and the smallest substep"));
   PetscFunctionReturn(0);
 }
@@ -219,7 +220,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
 {
   LamRVEState from;
   PetscReal *saddle;
-  Way way = {.branch = state->branch, .kinking = LAM_NO_KINKING};
+  Continuation path = {.branch = state->branch, .kinking = LAM_NO_KINKING};
   Outcome out;
 
   PetscFunctionBeginUser;
@@ -229,10 +230,10 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(Step(rve, from->y, &from->load, load, PETSC_TRUE, &response->branch, &out));
   if (!IsStable(&out)) {
     PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
-    PetscCall(Substeps(rve, from->y, &from->load, load, &way));
-    if (way.between[0] >= 1.0) {
-      out = way.end;
-      response->branch = way.branch;
+    PetscCall(Substeps(rve, from->y, &from->load, load, &path));
+    if (path.between[0] >= 1.0) {
+      out = path.end;
+      response->branch = path.branch;
     } else if (out.converged && out.collapsed < 0) { /* no stable state: return the unstable one */
       PetscInt again;
 
@@ -244,7 +245,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(PetscFree(saddle));
   response->negative_eigenvalues = out.negative;
   if (!out.converged || out.collapsed >= 0) {
-    PetscCall(EndOfWay(rve, &way, response));
+    PetscCall(EndOfPath(rve, &path, response));
     PetscFunctionReturn(0);
   }
   response->status = LAM_CONVERGED;

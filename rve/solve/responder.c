@@ -44,7 +44,7 @@ static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const 
   PetscFunctionBeginUser;
   if (direct->water) {
     PetscCheck(point >= 0 && point < direct->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "a sealed answer needs a material point whose states are kept");
+               "a sealed response needs a material point whose states are kept");
     PetscCall(LamRVESeal(direct->rve, direct->bulk_modulus, &direct->water[point * cells]));
   }
   PetscCall(LamRVESolve(direct->rve, load, state, response));
@@ -53,8 +53,8 @@ static PetscErrorCode SolvePoint(DirectResponder *direct, PetscInt point, const 
 }
 
 /* Solves, or returns the last response for an identical query; updates the counters. */
-static PetscErrorCode Answer(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
-                             LamResponse *response)
+static PetscErrorCode RespondAt(DirectResponder *direct, PetscInt point, const LamLoad *load, LamRVEState state,
+                                LamResponse *response)
 {
   const LamRVE rve = direct->rve;
 
@@ -95,7 +95,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }
-    PetscCall(Answer(direct, point, &loads[i], state, &responses[i]));
+    PetscCall(RespondAt(direct, point, &loads[i], state, &responses[i]));
   }
   PetscFunctionReturn(0);
 }
@@ -129,7 +129,7 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < direct->points; ++i)
     PetscCheck(direct->accepted[i]->solved, PETSC_COMM_SELF, PETSC_ERR_ORDER,
-               "material point %d has no accepted answer whose water it could keep", (int)i);
+               "material point %d has no accepted response whose water it could keep", (int)i);
   PetscCall(PetscMalloc1(direct->points * cells, &direct->water));
   for (PetscInt i = 0; i < direct->points; ++i)
     PetscCall(LamRVEGetLumens(direct->rve, direct->accepted[i], &direct->water[i * cells]));

@@ -139,7 +139,7 @@ void LamSummaryPrint(const json_t *summary);
 
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 request the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);
-void LamFaultsTell(void);    /* SIGSEGV and SIGBUS print a message before they end the program */
+void LamFaultsReport(void);  /* SIGSEGV and SIGBUS print a message before they end the program */
 int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
 
 #endif

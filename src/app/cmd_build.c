@@ -82,7 +82,7 @@ PetscErrorCode LamCommandBuild(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(
       LamOptionsParse(args, "build SCENE -d DB.h5 [--resume] [--shard I/N] [--ranks-per-rve R] [--json] [--quiet]",
-                      "Solves nodes of a grid until a table of them answers the states of the scene's sample box.",
+                      "Solves nodes of a grid until their table responds to the states of the scene's sample box.",
                       options, 1, &scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!b.path && !LamUsageError("build", exit_status, "the database is missing; give -d DB.h5")) PetscFunctionReturn(0);

@@ -359,7 +359,7 @@ PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args, "info FILE.h5 [--check] [--json]",
-                            "Tells what a file holds, who wrote it, with what; or what of it is sound.", options, 1,
+                            "Shows what a file holds, who wrote it, with what; or what of it is sound.", options, 1,
                             &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   *exit_status = LAM_EXIT_OK;

@@ -104,7 +104,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args, "map SCENE -o OUT.h5 [--resume] [--json] [--quiet]",
-                            "Tells how tissue fails over two of the scene's quantities.", options, 1, &m.scene_path,
+                            "Finds how tissue fails over two of the scene's quantities.", options, 1, &m.scene_path,
                             &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!m.path && !LamUsageError("map", exit_status, "the output is missing; give -o OUT.h5")) PetscFunctionReturn(0);

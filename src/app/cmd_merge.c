@@ -11,7 +11,7 @@ typedef struct {
   PetscInt n;
 } Merge;
 
-static void TellUser(void *ctx, const char words[])
+static void ReportToUser(void *ctx, const char words[])
 {
   (void)ctx;
   fprintf(stderr, "lamella merge: %s\n", words);
@@ -43,7 +43,8 @@ static void PrintTable(const Merge *m, const LamMergeReport *report, PetscReal s
 
 static PetscErrorCode Run(const Merge *m, int *exit_status)
 {
-  const LamMergeOptions options = {.salvage = m->salvage, .stop = LamStopRequested, .tell = m->quiet ? NULL : TellUser};
+  const LamMergeOptions options = {
+      .salvage = m->salvage, .stop = LamStopRequested, .tell = m->quiet ? NULL : ReportToUser};
   PetscReal start, end;
   LamMergeReport report;
 
@@ -55,7 +56,7 @@ static PetscErrorCode Run(const Merge *m, int *exit_status)
   if (report.stopped) PetscFunctionReturn(0);
   if (report.differing && !m->quiet)
     fprintf(stderr,
-            "lamella merge: %lld records have been answered twice, with different numbers; of each the first was kept, "
+            "lamella merge: %lld records have been solved twice, with different numbers; of each the first was kept, "
             "or the one that converged\n",
             (long long)report.differing);
   if (m->json)

@@ -22,7 +22,7 @@ static PetscReal Accuracy(const Query *q)
   return q->accuracy > 0 ? q->accuracy : q->from.accuracy;
 }
 
-static PetscErrorCode Answer(Query *q, const LamLoad *load)
+static PetscErrorCode Respond(Query *q, const LamLoad *load)
 {
   const PetscInt state = q->answered + q->refused + 1;
   LamResponse response;
@@ -44,8 +44,8 @@ static PetscErrorCode Answer(Query *q, const LamLoad *load)
   PetscFunctionReturn(0);
 }
 
-/* Answers one line of standard input; skips empty lines and those that begin with #. */
-static PetscErrorCode AnswerLine(Query *q, PetscInt number, char line[])
+/* Responds to one line of standard input; skips empty lines and those that begin with #. */
+static PetscErrorCode QueryLine(Query *q, PetscInt number, char line[])
 {
   char problem[LAM_PROBLEM_LENGTH];
   LamLoad load = q->defaults;
@@ -55,19 +55,18 @@ static PetscErrorCode AnswerLine(Query *q, PetscInt number, char line[])
   if (!*text || *text == '#') PetscFunctionReturn(0);
   PetscCheck(LamQueryParse(text, &q->from.scales, &load, problem), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "standard input, line %" PetscInt_FMT ": %s", number, problem);
-  PetscCall(Answer(q, &load));
+  PetscCall(Respond(q, &load));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AnswerInput(Query *q)
+static PetscErrorCode QueryInput(Query *q)
 {
   PetscErrorCode ierr = 0;
   size_t capacity = 0;
   char *line = NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt number = 1; !ierr && getline(&line, &capacity, stdin) >= 0; number++)
-    ierr = AnswerLine(q, number, line);
+  for (PetscInt number = 1; !ierr && getline(&line, &capacity, stdin) >= 0; number++) ierr = QueryLine(q, number, line);
   free(line);
   PetscCall(ierr);
   PetscCheck(!ferror(stdin), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "standard input: %s", strerror(errno));
@@ -124,9 +123,9 @@ static PetscErrorCode Run(Query *q, int *exit_status)
   if (!ReadValues(q, &load, exit_status)) PetscFunctionReturn(0);
   if (!q->json) PetscCall(LamPrintResponseHeader(q->from.micro.interface, LAM_SOURCE_DATABASE));
   if (strcmp(q->deformation, "-"))
-    PetscCall(Answer(q, &load));
+    PetscCall(Respond(q, &load));
   else
-    PetscCall(AnswerInput(q));
+    PetscCall(QueryInput(q));
   if (!q->json) PrintDefaults(q);
   *exit_status = q->refused ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
   PetscFunctionReturn(0);
@@ -146,9 +145,9 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
        "turgor of questions that do not say it, \"0.02 MPa\"; else that of the scene, or of all records", &q.turgor},
       {'g', "cohesion", LAM_OPTION_TEXT, "STRESS", "cohesion of contact tissue, likewise, \"0.001 MPa\"", &q.cohesion},
       {0, "accuracy", LAM_OPTION_ACCURACY, "ERROR",
-       "relative error of P that an answer may have by its estimate, 0.01; inf: any; by default the scene's",
+       "relative error of P that a response may have by its estimate, 0.01; inf: any; by default the scene's",
        &q.accuracy},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per answer on stdout", &q.json},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per response on stdout", &q.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the 81 numbers of the tangent too (with --json)", &q.tangent},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
@@ -157,7 +156,7 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
   PetscCall(LamOptionsParse(args,
                             "query DB.h5 -F \"1 0.1 0 1\" [-p \"0.02 MPa\"] [-g \"0.001 MPa\"] [--accuracy ERROR] "
                             "[--json] [--tangent]",
-                            "Answers from a response database; never solves.", options, 1, &path, &done, exit_status));
+                            "Responds from a database; never solves.", options, 1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!q.deformation &&
       !LamUsageError("query", exit_status,

@@ -103,7 +103,7 @@ static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, 
 }
 
 /* `state` of a LamRVERun; ctx: a Command. */
-static PetscErrorCode Tell(void *ctx, const LamRVERun *run, const LamResponse responses[2])
+static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse responses[2])
 {
   const Command *command = (const Command *)ctx;
   const LamScales *scales = &run->scene->scales;
@@ -120,7 +120,7 @@ static PetscErrorCode Tell(void *ctx, const LamRVERun *run, const LamResponse re
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TellEnd(const LamRVERun *run, PetscBool json)
+static PetscErrorCode ReportEnd(const LamRVERun *run, PetscBool json)
 {
   PetscFunctionBeginUser;
   if (run->find_onset) PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, json));
@@ -148,7 +148,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
 
   PetscFunctionBeginUser;
   run->reporter = LamConsoleReporter(console);
-  run->state = Tell;
+  run->state = Report;
   run->start = LamClock();
   run->derivatives = command->tangent;
   run->walls = console->json;
@@ -162,7 +162,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     if (!console->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface, LAM_SOURCE_SOLVE));
     PetscCall(LamRVERunSolve(run));
     LamConsoleClear(console);
-    PetscCall(TellEnd(run, console->json));
+    PetscCall(ReportEnd(run, console->json));
     *exit_status = ExitStatus(run);
   }
   PetscCall(LamRVERunDestroy(run));

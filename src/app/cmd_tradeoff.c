@@ -43,7 +43,7 @@ static void PrintUnused(const LamTradeoff *t)
       printf("the two finest meshes differ by %.2g %%, more than a tenth of the accuracy\n",
              (double)(100 * difference));
     else
-      printf("on the finest meshes it has no answer, or takes too long\n");
+      printf("on the finest meshes it has no response, or takes too long\n");
   }
 }
 
@@ -54,7 +54,8 @@ static void PrintReference(const LamTradeoff *t)
 
   if (!ComparesStates(t)) return;
   if (!r->used_count) {
-    printf("%-10s none: two finer meshes did not get done within the budget, or have no common answer\n", "reference");
+    printf("%-10s none: two finer meshes did not get done within the budget, or have no common response\n",
+           "reference");
     return;
   }
   printf("%-10s %s elements, %.3g core-s; ", "reference", MeshWords(&r->micro, text), (double)r->cpu);
@@ -117,7 +118,7 @@ static void PrintTable(const LamTradeoff *t)
   printf("%-10s %s: %" PetscInt_FMT " states (%s), planned mesh %s\n", "scene", t->scene->path, t->states.n,
          t->states.origin, MeshWords(&t->scene->micro, text));
   if (t->states.dropped)
-    printf("%-10s %" PetscInt_FMT " states of the load have no answer on the planned mesh and are left out\n", "",
+    printf("%-10s %" PetscInt_FMT " states of the load have no response on the planned mesh and are left out\n", "",
            t->states.dropped);
   PrintReference(t);
   for (PetscInt i = 0; i < t->n; i++) {

@@ -71,7 +71,7 @@ static PetscErrorCode FindQuantiles(const LamAudit *a, size_t offset, PetscInt c
   PetscFunctionReturn(0);
 }
 
-static void JudgeEstimate(const LamAudit *a, const LamAudited *result, Summary *s)
+static void CompareEstimate(const LamAudit *a, const LamAudited *result, Summary *s)
 {
   const PetscReal error = result->error, estimate = result->estimate;
   const PetscReal accuracy = isfinite(a->accuracy) ? a->accuracy : a->from->accuracy;
@@ -96,7 +96,7 @@ static PetscErrorCode Summarise(const LamAudit *a, Summary *s)
     s->beyond += !(result->error <= a->accuracy);
     s->far += !(result->error <= FAR * a->accuracy);
     if (s->worst < 0 || result->error > a->results[s->worst].error) s->worst = i;
-    JudgeEstimate(a, result, s);
+    CompareEstimate(a, result, s);
   }
   s->holds = (PetscBool)(s->compared && (PetscReal)s->beyond <= SHARE_BEYOND * (PetscReal)s->compared && !s->far);
   PetscFunctionReturn(0);
@@ -251,8 +251,8 @@ static void PrintTable(const LamVerification *v, const Summary *s, PetscReal sec
   putchar('\n');
   PrintEstimates(s);
   PrintWorst(a, s->worst);
-  printf("%-16s %s: %" PetscInt_FMT " of %" PetscInt_FMT " answers beyond the accuracy (%.2g %% may be), %" PetscInt_FMT
-         " beyond %d times\n",
+  printf("%-16s %s: %" PetscInt_FMT " of %" PetscInt_FMT
+         " responses beyond the accuracy (%.2g %% may be), %" PetscInt_FMT " beyond %d times\n",
          "verdict", s->holds ? "holds" : "does not hold", s->beyond, s->compared, 100 * SHARE_BEYOND, s->far, FAR);
 }
 
@@ -278,7 +278,7 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
   LamConsole console = {.command = "verify"};
   PetscBool done;
   const LamOption options[] = {
-      {0, "samples", LAM_OPTION_FROM_1, "N", "answers that are solved afresh; default 200", &v.samples},
+      {0, "samples", LAM_OPTION_FROM_1, "N", "responses that are solved afresh; default 200", &v.samples},
       {0, "seed", LAM_OPTION_FROM_0, "S", "another one draws other states; default 1", &v.seed},
       {0, "accuracy", LAM_OPTION_ACCURACY, "ERROR",
        "relative error of P that is asked for, 0.01; inf: any; by default the scene's", &v.accuracy},
@@ -289,8 +289,8 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args, "verify DB.h5 [--samples N] [--seed S] [--accuracy ERROR] [--json] [--quiet]",
-                            "Asks a database at random, solves what it answers afresh, and compares.", options, 1,
-                            &v.path, &done, exit_status));
+                            "Queries a database at random, solves the same states, and compares.", options, 1, &v.path,
+                            &done, exit_status));
   if (done) PetscFunctionReturn(0);
   PetscCall(args->start(args));
   v.reporter = LamConsoleReporter(&console);

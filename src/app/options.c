@@ -143,7 +143,7 @@ static PetscErrorCode Translate(const LamOption options[], Getopt *g)
 }
 
 /* Reports an option that is unknown or lacks its value. */
-static PetscBool TellWrongOption(const LamArgs *args, int code, const Getopt *g, int *exit_status)
+static PetscBool ReportWrongOption(const LamArgs *args, int code, const Getopt *g, int *exit_status)
 {
   const char *command = args->argv[0], *text = args->argv[optind - 1], *names[MOST_OPTIONS + 2], *near;
   const PetscBool lacks = (PetscBool)(code == ':');
@@ -180,7 +180,7 @@ static PetscBool ReadOptions(LamArgs *args, const LamOption options[], const Get
   while ((code = getopt_long(args->argc, args->argv, g->letters, g->names, NULL)) != -1) {
     const LamOption *option;
 
-    if (code == '?' || code == ':') return TellWrongOption(args, code, g, exit_status);
+    if (code == '?' || code == ':') return ReportWrongOption(args, code, g, exit_status);
     if (code == 'h') {
       *help = PETSC_TRUE;
       return PETSC_TRUE;

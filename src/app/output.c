@@ -39,7 +39,7 @@ static json_t *MemberToJSON(const LamMember *m, const LamResponse *response, Pet
 
 /* Whether a member is printed. Derivatives are printed with --tangent, as are quantities that follow from the
    tangent, which a database response always has; reason and distance are printed only for some states. */
-static PetscBool IsTold(const LamMember *m, const LamResponse *response, PetscBool tangent)
+static PetscBool IsPrinted(const LamMember *m, const LamResponse *response, PetscBool tangent)
 {
   static const char *const derivatives[] = {
       "tangent",    "P_turgor",        "energy_turgor",    "energy_turgor2",
@@ -63,7 +63,7 @@ PetscErrorCode LamResponseToJSON(const LamResponse *response, const LamScales *s
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a JSON object");
   if (state >= 0) json_object_set_new(o, "state", json_integer(state));
   for (const LamMember *m = LamResponseMembers; m->name; m++)
-    if (IsTold(m, response, tangent))
+    if (IsPrinted(m, response, tangent))
       json_object_set_new(o, m->name, MemberToJSON(m, response, scales->stress * PASCAL_TO_MPA));
   *object = o;
   PetscFunctionReturn(0);

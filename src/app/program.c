@@ -14,15 +14,15 @@ static const struct {
     {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE},
     {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
     {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
-    {"query", "one answer, or many, from a database", LamCommandQuery, PETSC_FALSE},
-    {"verify", "solve part of a database's answers afresh and compare", LamCommandVerify, PETSC_TRUE},
+    {"query", "one response, or many, from a database", LamCommandQuery, PETSC_FALSE},
+    {"verify", "solve part of a database's responses afresh and compare", LamCommandVerify, PETSC_TRUE},
     {"fe2", "solve the scene's macroscale problem", LamCommandFE2, PETSC_TRUE},
     {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE},
     {"process", "follow tissue that changes in time", LamCommandProcess, PETSC_TRUE},
-    {"map", "tell how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
+    {"map", "how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
-    {"info", "tell what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
+    {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
@@ -33,7 +33,7 @@ static void PrintHelp(FILE *out)
   fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
                "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
   for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-8s %s\n", Commands[i].name, Commands[i].summary);
-  fprintf(out, "\nlamella COMMAND --help tells more, lamella --version the versions of the libraries.\n");
+  fprintf(out, "\nlamella COMMAND --help shows more, lamella --version the versions of the libraries.\n");
 }
 
 static PetscErrorCode PrintVersion(void)
@@ -57,7 +57,7 @@ static PetscErrorCode PrintVersion(void)
 
 /* ---- the command line ---- */
 
-static void TellUnknown(const char word[])
+static void ReportUnknown(const char word[])
 {
   const char *commands[COMMAND_COUNT + 1] = {NULL}, *const options[] = {"--help", "--version", NULL}, *near;
 
@@ -83,7 +83,7 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
     PetscCall(Commands[i].run(args, status));
     PetscFunctionReturn(0);
   }
-  TellUnknown(args->argv[0]);
+  ReportUnknown(args->argv[0]);
   *status = LAM_EXIT_USAGE;
   PetscFunctionReturn(0);
 }

@@ -48,7 +48,7 @@ static int StatusOf(PetscErrorCode code)
   }
 }
 
-static void TellError(PetscErrorCode code)
+static void ReportError(PetscErrorCode code)
 {
   const char *general = NULL;
 
@@ -58,7 +58,7 @@ static void TellError(PetscErrorCode code)
     return;
   }
   if (code == PETSC_ERR_MEM) {
-    fprintf(stderr, "lamella: out of memory (%s); lamella check tells what a scene needs\n", LamErrorMessage());
+    fprintf(stderr, "lamella: out of memory (%s); lamella check shows what a scene needs\n", LamErrorMessage());
     return;
   }
   (void)PetscErrorMessage(code, &general, NULL);
@@ -156,11 +156,11 @@ static void AgreeAtEnd(PetscErrorCode code, int *status)
   mine[1] = own ? size - rank : 0;
   MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MAX, EndComm, &request);
   if (!AwaitOthers(&request, own ? OWN_ERROR_PATIENCE : code ? SHARED_ERROR_PATIENCE : -1)) {
-    if (own) TellError(code);
+    if (own) ReportError(code);
     fprintf(stderr, "lamella: rank %d ends the job\n", rank);
     MPI_Abort(EndComm, *status);
   }
-  if (own && all[1] == mine[1]) TellError(code);
+  if (own && all[1] == mine[1]) ReportError(code);
   *status = all[0];
   (void)LamStopShareEnd();
   MPI_Comm_free(&EndComm);
@@ -186,7 +186,7 @@ void LamRuntimeEnd(PetscErrorCode code, int *status)
   if (EndComm != MPI_COMM_NULL)
     AgreeAtEnd(code, status);
   else if (code)
-    TellError(code);
+    ReportError(code);
   if (PetscInitializeCalled && !code) (void)WarnOfUnusedOptions();
   if (PetscInitializeCalled && PetscFinalize()) *status = PetscMax(*status, LAM_EXIT_FAULT);
   if (!fflush(stdout) && !ferror(stdout)) return;
@@ -226,7 +226,7 @@ PetscErrorCode LamRuntimeBegin(void)
 {
   FillStreams();
   UseOneThread();
-  LamFaultsTell();
+  LamFaultsReport();
   /* HDF5 crashes in its cleanup after a file that could not be written. The cleanup would run at exit, and in
      MPI_Finalize if MPI is running when HDF5 is initialised. */
   H5dont_atexit();

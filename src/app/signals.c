@@ -45,7 +45,7 @@ static void Fault(int number)
   raise(number);
 }
 
-void LamFaultsTell(void)
+void LamFaultsReport(void)
 {
 #ifndef __SANITIZE_ADDRESS__ /* AddressSanitizer reports more */
   void *frame;

@@ -6,8 +6,8 @@
 #include "clock.h"
 #include <stdio.h>
 
-static PetscErrorCode AskScattered(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
-                                   LamResponse *response)
+static PetscErrorCode QueryScattered(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
+                                     LamResponse *response)
 {
   const PetscReal start = LamClock();
 
@@ -27,14 +27,14 @@ PetscErrorCode LamDatabaseQuery(LamDatabase database, const LamLoad *load, Petsc
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetTable(database, &table));
   if (!table) {
-    PetscCall(AskScattered(database, load, LAM_TRUST_RADIUS, accuracy, response));
+    PetscCall(QueryScattered(database, load, LAM_TRUST_RADIUS, accuracy, response));
     PetscFunctionReturn(0);
   }
   PetscCall(LamTableQuery(table, load, accuracy, response));
   PetscCall(LamTableDestroy(&table));
   if (response->status != LAM_OUT_OF_REACH || !database->scatter.n) PetscFunctionReturn(0);
   /* with a table, scattered records are states that it did not cover: each is used for its own state only */
-  PetscCall(AskScattered(database, load, 0, accuracy, &scattered));
+  PetscCall(QueryScattered(database, load, 0, accuracy, &scattered));
   if (LamResponseHasFields(&scattered)) *response = scattered; /* else keep the table's reason */
   PetscFunctionReturn(0);
 }

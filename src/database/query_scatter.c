@@ -278,7 +278,7 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
   }
   if (other < DOUBT * r->distance) {
     snprintf(r->reason, sizeof(r->reason),
-             "a state of another branch, with loose cells or without an answer is %.3g away in strain, the nearest "
+             "a state of another branch, with loose cells or without a response is %.3g away in strain, the nearest "
              "record %.3g",
              (double)other, (double)r->distance);
     return PETSC_FALSE;
@@ -292,8 +292,8 @@ static PetscBool IsOwnState(const LamScatterNearest *at)
 }
 
 /* Indicators are copied from the record. */
-static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
-                            LamResponse *r)
+static void RespondFromModel(const LamScatterSearch *search, const LamScatterNearest *at, PetscReal error,
+                             LamResponse *r)
 {
   const LamResponse *record = &search->db->scatter.records[at->state];
   LamScatterVector delta;
@@ -310,7 +310,7 @@ static void AnswerFromModel(const LamScatterSearch *search, const LamScatterNear
   r->indicators_trusted = PETSC_FALSE;
 }
 
-static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)
+static void RespondFromBlend(const LamScatterSearch *search, PetscReal reach, LamResponse *r)
 {
   const LamScatter *scatter = &search->db->scatter;
   LamExpansion blend;
@@ -333,16 +333,16 @@ static void AnswerBlend(const LamScatterSearch *search, PetscReal reach, LamResp
 /* Replaces the response by LAM_OUT_OF_REACH with the reason. */
 static PetscErrorCode Refuse(PetscReal accuracy, LamResponse *r)
 {
-  const LamResponse answer = *r;
+  const LamResponse kept = *r;
 
   PetscFunctionBeginUser;
-  PetscCall(LamResponseInit(&answer.load, r));
-  r->source = answer.source;
+  PetscCall(LamResponseInit(&kept.load, r));
+  r->source = kept.source;
   r->status = LAM_OUT_OF_REACH;
-  r->distance = answer.distance;
-  r->error_estimate = answer.error_estimate;
+  r->distance = kept.distance;
+  r->error_estimate = kept.error_estimate;
   snprintf(r->reason, sizeof(r->reason),
-           "the nearest record is %.3g away in strain, the estimated error of P is %.2g, asked for is %.2g",
+           "the nearest record is %.3g away in strain, the estimated error of P is %.2g, the accuracy is %.2g",
            (double)r->distance, (double)r->error_estimate, (double)accuracy);
   PetscFunctionReturn(0);
 }
@@ -357,13 +357,13 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
   LamScatterFind(database, load, &search);
   own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
   if (IsOwnState(own)) {
-    AnswerFromModel(&search, own, 0, response);
+    RespondFromModel(&search, own, 0, response);
     PetscFunctionReturn(0);
   }
   response->status = LAM_OUT_OF_REACH;
   if (search.blends.state >= 0) response->distance = sqrt(search.blends.distance2);
   if (!MayBlend(&search, radius, response)) PetscFunctionReturn(0);
-  AnswerBlend(&search, REACH * radius, response);
+  RespondFromBlend(&search, REACH * radius, response);
   if (!(response->error_estimate <= accuracy)) PetscCall(Refuse(accuracy, response));
   PetscFunctionReturn(0);
 }
@@ -403,6 +403,6 @@ PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel 
   LamScatterBegin(database, load, &search);
   at.distance2 = LamScatterDistance2(&search, &database->scatter.states[at.state], at.image);
   error = OneModelError(database, at.distance2);
-  if (error <= accuracy) AnswerFromModel(&search, &at, error, response);
+  if (error <= accuracy) RespondFromModel(&search, &at, error, response);
   PetscFunctionReturn(0);
 }

@@ -51,9 +51,9 @@ typedef struct {
 
 /* ---- step 1: query ---- */
 
-/* Asks a source for all missing loads; keeps those still without a response. */
-static PetscErrorCode AskAll(LamCache *cache, Missing *missing,
-                             PetscErrorCode (*ask)(LamCache *, const LamLoad *, PetscInt, LamResponse *))
+/* Queries a source for all missing loads; keeps those still without a response. */
+static PetscErrorCode QueryAll(LamCache *cache, Missing *missing,
+                               PetscErrorCode (*ask)(LamCache *, const LamLoad *, PetscInt, LamResponse *))
 {
   const PetscReal start = LamClock();
   PetscInt left = 0;
@@ -236,7 +236,7 @@ static PetscErrorCode Refine(LamCache *cache, Missing *missing, PetscBool *ends,
   if (!*ends) {
     PetscCall(SolveAndAdd(cache, &batch, stopped));
     missing->solved = PETSC_TRUE;
-    PetscCall(AskAll(cache, missing, LamCacheAsk));
+    PetscCall(QueryAll(cache, missing, LamCacheQuery));
   }
   PetscCall(BatchDestroy(&batch));
   PetscFunctionReturn(0);
@@ -266,7 +266,7 @@ static PetscErrorCode TakeOwnState(LamCache *cache, const LamLoad *load, const L
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
-  if (LamResponseHasFields(solved)) PetscCall(LamCacheAskRecords(cache, load, response));
+  if (LamResponseHasFields(solved)) PetscCall(LamCacheQueryRecords(cache, load, response));
   if (!LamResponseHasFields(response)) { /* failed, or unstable: a database does not return unstable states */
     *response = *solved;
     if (LamResponseHasFields(solved) && LamLoadCompare(&rounded, &solved->load))
@@ -332,7 +332,7 @@ static PetscErrorCode SolveMissing(LamCache *cache, Missing *missing)
     const PetscInt before = missing->n;
 
     if (themselves && cache->outside == LAM_OUTSIDE_SOLVE) {
-      PetscCall(AskAll(cache, missing, LamCacheAdopt));
+      PetscCall(QueryAll(cache, missing, LamCacheAdopt));
       if (!missing->solved) cache->counters.hits += before - missing->n;
     }
     PetscCallMPI(MPI_Allreduce(&missing->n, &anywhere, 1, MPIU_INT, MPI_SUM, cache->comm));
@@ -361,7 +361,7 @@ static PetscErrorCode CacheRespond(void *ctx, PetscInt n, const LamLoad loads[],
                "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], cache->n_points);
     missing.at[i] = i;
   }
-  PetscCall(AskAll(cache, &missing, LamCacheAsk));
+  PetscCall(QueryAll(cache, &missing, LamCacheQuery));
   for (PetscInt i = 0; i < n; i++) cache->counters.hits += LamResponseHasFields(&responses[i]);
   cache->counters.queries += n;
   if (cache->solver) PetscCall(SolveMissing(cache, &missing));

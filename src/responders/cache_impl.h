@@ -10,7 +10,7 @@
 /* State of a material point that is kept beyond a load step. */
 typedef struct {
   LamScatterModel model; /* state -1: none */
-  PetscBool answers;     /* the last response came from the model, not from a table */
+  PetscBool responds;    /* the last response came from the model, not from a table */
 } LamCacheHeld;
 
 /* Sources of the response at a material point. */
@@ -36,12 +36,12 @@ typedef struct {
 /* Argument `point`: index of the material point; -1: none. */
 
 /* Queries the point's last source first. LAM_OUT_OF_REACH where no source responds. */
-PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
+PetscErrorCode LamCacheQuery(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
 /*
   Queries the records outside the grid. With a solver only a record of the queried state itself is used: blends of
   surrounding states would change with each added record.
 */
-PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamResponse *response);
+PetscErrorCode LamCacheQueryRecords(LamCache *cache, const LamLoad *load, LamResponse *response);
 /* Assigns the nearest model to the point if its error estimate leaves a margin; else changes nothing. */
 PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt point, LamResponse *response);
 /* From now on the model of the state solved for the point is used there, unless the solve failed or is unstable. */

@@ -22,7 +22,7 @@ static LamCachePoint *PointOf(const LamCache *cache, PetscInt point)
 }
 
 /* Queries the point's table, then the newest, which becomes the point's if it responds. Else LAM_OUT_OF_REACH. */
-static PetscErrorCode AskTables(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
+static PetscErrorCode QueryTables(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
   if (point && point->table) {
@@ -47,51 +47,51 @@ static void TakeTo(LamCachePoint *point, LamScatterModel model)
 static PetscErrorCode TryModel(LamCache *cache, const LamScatterModel *model, const LamLoad *load, PetscReal accuracy,
                                LamResponse *response)
 {
-  LamResponse answer;
+  LamResponse found;
 
   PetscFunctionBeginUser;
   if (model->state < 0) PetscFunctionReturn(0);
-  PetscCall(LamScatterModelQuery(cache->database, model, load, accuracy, &answer));
-  if (LamResponseHasFields(&answer)) *response = answer;
+  PetscCall(LamScatterModelQuery(cache->database, model, load, accuracy, &found));
+  if (LamResponseHasFields(&found)) *response = found;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AskModel(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
+static PetscErrorCode QueryModel(LamCache *cache, const LamLoad *load, LamCachePoint *point, LamResponse *response)
 {
   PetscFunctionBeginUser;
   if (!point) PetscFunctionReturn(0);
   PetscCall(TryModel(cache, &point->held.model, load, cache->accuracy, response));
-  if (LamResponseHasFields(response) && !point->held.answers) TakeTo(point, point->held.model);
+  if (LamResponseHasFields(response) && !point->held.responds) TakeTo(point, point->held.model);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCacheAskRecords(LamCache *cache, const LamLoad *load, LamResponse *response)
+PetscErrorCode LamCacheQueryRecords(LamCache *cache, const LamLoad *load, LamResponse *response)
 {
-  const LamLoad question = cache->solver ? LamLoadRound(load) : *load;
-  LamResponse answer;
+  const LamLoad query = cache->solver ? LamLoadRound(load) : *load;
+  LamResponse found;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseQuery(cache->database, &question, cache->accuracy, &answer));
-  if (answer.status == LAM_INVALID_F) *response = answer;
-  if (answer.status == LAM_INVALID_F || (cache->solver && !(answer.distance <= OWN_STATE))) PetscFunctionReturn(0);
-  LamResponseCorrectToLoad(load, &answer);
-  *response = answer;
+  PetscCall(LamDatabaseQuery(cache->database, &query, cache->accuracy, &found));
+  if (found.status == LAM_INVALID_F) *response = found;
+  if (found.status == LAM_INVALID_F || (cache->solver && !(found.distance <= OWN_STATE))) PetscFunctionReturn(0);
+  LamResponseCorrectToLoad(load, &found);
+  *response = found;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt index, LamResponse *response)
+PetscErrorCode LamCacheQuery(LamCache *cache, const LamLoad *load, PetscInt index, LamResponse *response)
 {
   LamCachePoint *point = PointOf(cache, index);
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->status = LAM_OUT_OF_REACH;
-  if (point && point->held.answers) PetscCall(AskModel(cache, load, point, response));
+  if (point && point->held.responds) PetscCall(QueryModel(cache, load, point, response));
   if (response->status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  if (cache->newest && !LamCacheUsesDirectSolve(cache, index)) PetscCall(AskTables(cache, load, point, response));
-  if (point && LamResponseHasFields(response)) point->held.answers = PETSC_FALSE;
-  if (response->status == LAM_OUT_OF_REACH) PetscCall(AskModel(cache, load, point, response));
-  if (response->status == LAM_OUT_OF_REACH) PetscCall(LamCacheAskRecords(cache, load, response));
+  if (cache->newest && !LamCacheUsesDirectSolve(cache, index)) PetscCall(QueryTables(cache, load, point, response));
+  if (point && LamResponseHasFields(response)) point->held.responds = PETSC_FALSE;
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(QueryModel(cache, load, point, response));
+  if (response->status == LAM_OUT_OF_REACH) PetscCall(LamCacheQueryRecords(cache, load, response));
   PetscFunctionReturn(0);
 }
 
@@ -100,15 +100,15 @@ PetscErrorCode LamCacheAsk(LamCache *cache, const LamLoad *load, PetscInt index,
 PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt index, LamResponse *response)
 {
   LamCachePoint *point = PointOf(cache, index);
-  const LamLoad question = LamLoadRound(load);
+  const LamLoad query = LamLoadRound(load);
   LamScatterModel model;
-  LamResponse answer = {.status = LAM_OUT_OF_REACH};
+  LamResponse found = {.status = LAM_OUT_OF_REACH};
 
   PetscFunctionBeginUser;
   if (!point || LamCacheUsesDirectSolve(cache, index)) PetscFunctionReturn(0);
-  LamScatterModelFind(cache->database, &question, &model);
-  PetscCall(TryModel(cache, &model, &question, ADOPTS * cache->accuracy, &answer));
-  if (!LamResponseHasFields(&answer)) PetscFunctionReturn(0);
+  LamScatterModelFind(cache->database, &query, &model);
+  PetscCall(TryModel(cache, &model, &query, ADOPTS * cache->accuracy, &found));
+  if (!LamResponseHasFields(&found)) PetscFunctionReturn(0);
   PetscCall(TryModel(cache, &model, load, cache->accuracy, response));
   TakeTo(point, model);
   PetscFunctionReturn(0);
@@ -116,12 +116,12 @@ PetscErrorCode LamCacheAdopt(LamCache *cache, const LamLoad *load, PetscInt inde
 
 void LamCacheAssignLocalModel(LamCache *cache, const LamLoad *load, PetscInt index)
 {
-  const LamLoad question = LamLoadRound(load);
+  const LamLoad query = LamLoadRound(load);
   LamCachePoint *point = PointOf(cache, index);
   LamScatterModel model;
 
   if (!point) return;
-  LamScatterModelFind(cache->database, &question, &model);
+  LamScatterModelFind(cache->database, &query, &model);
   TakeTo(point, model.state < 0 ? point->held.model : model);
 }
 
@@ -147,7 +147,7 @@ PetscErrorCode LamCacheEndStep(LamCache *cache, PetscBool accept)
 typedef struct {
   LamLoad record;
   PetscInt image; /* -1: no model */
-  PetscBool answers;
+  PetscBool responds;
 } Kept;
 
 PetscErrorCode LamCacheStateSize(void *ctx, size_t *bytes)
@@ -166,7 +166,7 @@ PetscErrorCode LamCacheSave(void *ctx, PetscInt point, void *bytes)
   PetscFunctionBeginUser;
   memset(&kept, 0, sizeof(kept));
   kept.image = -1;
-  kept.answers = held->answers;
+  kept.responds = held->responds;
   if (held->model.state >= 0) {
     kept.record = LamScatterModelLoad(cache->database, &held->model);
     kept.image = held->model.image;
@@ -185,7 +185,7 @@ PetscErrorCode LamCacheLoad(void *ctx, PetscInt point, const void *bytes)
   memcpy(&kept, bytes, sizeof(kept));
   if (kept.image >= 0) LamScatterModelFind(cache->database, &kept.record, &held.model);
   held.model.image = kept.image;
-  held.answers = kept.answers;
+  held.responds = kept.responds;
   cache->points[point].held = cache->points[point].accepted = held;
   PetscFunctionReturn(0);
 }

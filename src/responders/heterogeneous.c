@@ -9,7 +9,7 @@ typedef struct {
   LamHeterogeneousPoint *points;
   PetscInt (*number)[LAM_BLEND_TERMS]; /* [point] its index in the tissue of each term */
   LamResponderCounters counters;
-} Mosaic;
+} Heterogeneous;
 
 /* ---- rotation and scaling ---- */
 
@@ -53,13 +53,13 @@ static void Turn(PetscReal angle, LamResponse *r)
 /* ---- queries ---- */
 
 /* at[k]: response of term k. Without fields in one term the response has none, with that term's status and reason. */
-static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint *point, const LamResponse at[],
-                              LamResponse *response)
+static PetscErrorCode Combine(const Heterogeneous *heterogeneous, const LamHeterogeneousPoint *point,
+                              const LamResponse at[], LamResponse *response)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(&at[0].load, response));
   for (PetscInt k = 0; k < point->count; k++) {
-    const char *name = mosaic->tissues[point->term[k].knot].name;
+    const char *name = heterogeneous->tissues[point->term[k].knot].name;
 
     if (LamResponseHasFields(&at[k])) continue;
     response->status = at[k].status;
@@ -75,13 +75,13 @@ static PetscErrorCode Combine(const Mosaic *mosaic, const LamHeterogeneousPoint 
 }
 
 /* Sums the tissues' counters. */
-static void SumCounters(Mosaic *mosaic)
+static void SumCounters(Heterogeneous *heterogeneous)
 {
-  LamResponderCounters *sum = &mosaic->counters;
+  LamResponderCounters *sum = &heterogeneous->counters;
 
   *sum = (LamResponderCounters){0};
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    const LamResponderCounters part = LamResponderGetCounters(mosaic->tissues[t].responder);
+  for (PetscInt t = 0; t < heterogeneous->tissue_count; t++) {
+    const LamResponderCounters part = LamResponderGetCounters(heterogeneous->tissues[t].responder);
 
     sum->queries += part.queries;
     sum->hits += part.hits;
@@ -95,8 +95,8 @@ static void SumCounters(Mosaic *mosaic)
 
 /* Queries each tissue for all its terms. parts: responses of query i from start[i] on, one per term, in the axes and
    units of the body. */
-static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad loads[], const PetscInt points[],
-                                 const PetscInt start[], LamResponse parts[])
+static PetscErrorCode QueryTissues(const Heterogeneous *heterogeneous, PetscInt n, const LamLoad loads[],
+                                   const PetscInt points[], const PetscInt start[], LamResponse parts[])
 {
   PetscInt *numbers, *query, *part;
   LamResponse *responses;
@@ -104,24 +104,24 @@ static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc5(n, &own, n, &numbers, n, &query, n, &part, n, &responses));
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    const LamHeterogeneousTissue *tissue = &mosaic->tissues[t];
+  for (PetscInt t = 0; t < heterogeneous->tissue_count; t++) {
+    const LamHeterogeneousTissue *tissue = &heterogeneous->tissues[t];
     PetscInt count = 0;
 
     for (PetscInt i = 0; i < n; i++) {
-      const LamHeterogeneousPoint *point = &mosaic->points[points[i]];
+      const LamHeterogeneousPoint *point = &heterogeneous->points[points[i]];
 
       for (PetscInt k = 0; k < point->count; k++) {
         if (point->term[k].knot != t) continue;
         own[count] = ToTissue(&loads[i], point->angle, tissue->stress);
-        numbers[count] = mosaic->number[points[i]][k];
+        numbers[count] = heterogeneous->number[points[i]][k];
         query[count] = i;
         part[count++] = start[i] + k;
       }
     }
     PetscCall(LamResponderRespond(tissue->responder, count, own, numbers, responses));
     for (PetscInt q = 0; q < count; q++) {
-      const PetscReal angle = mosaic->points[points[query[q]]].angle;
+      const PetscReal angle = heterogeneous->points[points[query[q]]].angle;
       LamResponse *r = &parts[part[q]];
 
       *r = responses[q];
@@ -136,10 +136,10 @@ static PetscErrorCode AskTissues(const Mosaic *mosaic, PetscInt n, const LamLoad
 
 /* ---- responder ---- */
 
-static PetscErrorCode MosaicRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
-                                    LamResponse responses[])
+static PetscErrorCode HeterogeneousRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                           LamResponse responses[])
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
   PetscInt *start;
   LamResponse *parts;
 
@@ -147,46 +147,48 @@ static PetscErrorCode MosaicRespond(void *ctx, PetscInt n, const LamLoad loads[]
   PetscCall(PetscMalloc1(n + 1, &start));
   start[0] = 0;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCheck(points[i] >= 0 && points[i] < mosaic->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], mosaic->n);
-    start[i + 1] = start[i] + mosaic->points[points[i]].count;
+    PetscCheck(points[i] >= 0 && points[i] < heterogeneous->n, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "material point %" PetscInt_FMT ", of %" PetscInt_FMT, points[i], heterogeneous->n);
+    start[i + 1] = start[i] + heterogeneous->points[points[i]].count;
   }
   PetscCall(PetscMalloc1(start[n], &parts));
-  PetscCall(AskTissues(mosaic, n, loads, points, start, parts));
+  PetscCall(QueryTissues(heterogeneous, n, loads, points, start, parts));
   for (PetscInt i = 0; i < n; i++)
-    PetscCall(Combine(mosaic, &mosaic->points[points[i]], &parts[start[i]], &responses[i]));
+    PetscCall(Combine(heterogeneous, &heterogeneous->points[points[i]], &parts[start[i]], &responses[i]));
   PetscCall(PetscFree(parts));
   PetscCall(PetscFree(start));
-  SumCounters(mosaic);
+  SumCounters(heterogeneous);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MosaicAccept(void *ctx)
+static PetscErrorCode HeterogeneousAccept(void *ctx)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) PetscCall(LamResponderAccept(mosaic->tissues[t].responder));
+  for (PetscInt t = 0; t < heterogeneous->tissue_count; t++)
+    PetscCall(LamResponderAccept(heterogeneous->tissues[t].responder));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MosaicReject(void *ctx)
+static PetscErrorCode HeterogeneousReject(void *ctx)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) PetscCall(LamResponderReject(mosaic->tissues[t].responder));
+  for (PetscInt t = 0; t < heterogeneous->tissue_count; t++)
+    PetscCall(LamResponderReject(heterogeneous->tissues[t].responder));
   PetscFunctionReturn(0);
 }
 
 /* All tissues have the same bulk modulus of water; each term of a blend keeps its own water. */
-static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
+static PetscErrorCode HeterogeneousSeal(void *ctx, PetscReal bulk_modulus)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
 
   PetscFunctionBeginUser;
-  for (PetscInt t = 0; t < mosaic->tissue_count; t++) {
-    const LamHeterogeneousTissue *tissue = &mosaic->tissues[t];
+  for (PetscInt t = 0; t < heterogeneous->tissue_count; t++) {
+    const LamHeterogeneousTissue *tissue = &heterogeneous->tissues[t];
 
     PetscCall(LamResponderSeal(tissue->responder, bulk_modulus / tissue->stress));
   }
@@ -197,15 +199,15 @@ static PetscErrorCode MosaicSeal(void *ctx, PetscReal bulk_modulus)
 
 static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
 
   PetscFunctionBeginUser;
   *bytes = 0;
-  for (PetscInt p = 0; p < mosaic->n; p++) {
+  for (PetscInt p = 0; p < heterogeneous->n; p++) {
     size_t sum = 0;
 
-    for (PetscInt k = 0; k < mosaic->points[p].count; k++) {
-      const LamResponder responder = mosaic->tissues[mosaic->points[p].term[k].knot].responder;
+    for (PetscInt k = 0; k < heterogeneous->points[p].count; k++) {
+      const LamResponder responder = heterogeneous->tissues[heterogeneous->points[p].term[k].knot].responder;
       size_t size;
 
       PetscCall(LamResponderGetStateSize(responder, &size));
@@ -218,15 +220,15 @@ static PetscErrorCode StateSize(void *ctx, size_t *bytes)
 
 static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
   char *at = bytes;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
-    const LamResponder responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+  for (PetscInt k = 0; k < heterogeneous->points[point].count; k++) {
+    const LamResponder responder = heterogeneous->tissues[heterogeneous->points[point].term[k].knot].responder;
     size_t size;
 
-    PetscCall(LamResponderSave(responder, mosaic->number[point][k], at));
+    PetscCall(LamResponderSave(responder, heterogeneous->number[point][k], at));
     PetscCall(LamResponderGetStateSize(responder, &size));
     at += size;
   }
@@ -235,28 +237,28 @@ static PetscErrorCode Save(void *ctx, PetscInt point, void *bytes)
 
 static PetscErrorCode Load(void *ctx, PetscInt point, const void *bytes)
 {
-  Mosaic *mosaic = (Mosaic *)ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)ctx;
   const char *at = bytes;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < mosaic->points[point].count; k++) {
-    const LamResponder responder = mosaic->tissues[mosaic->points[point].term[k].knot].responder;
+  for (PetscInt k = 0; k < heterogeneous->points[point].count; k++) {
+    const LamResponder responder = heterogeneous->tissues[heterogeneous->points[point].term[k].knot].responder;
     size_t size;
 
-    PetscCall(LamResponderLoad(responder, mosaic->number[point][k], at));
+    PetscCall(LamResponderLoad(responder, heterogeneous->number[point][k], at));
     PetscCall(LamResponderGetStateSize(responder, &size));
     at += size;
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MosaicDestroy(void **ctx)
+static PetscErrorCode HeterogeneousDestroy(void **ctx)
 {
-  Mosaic *mosaic = (Mosaic *)*ctx;
+  Heterogeneous *heterogeneous = (Heterogeneous *)*ctx;
 
   PetscFunctionBeginUser;
-  if (!mosaic) PetscFunctionReturn(0);
-  PetscCall(PetscFree3(mosaic->tissues, mosaic->points, mosaic->number));
+  if (!heterogeneous) PetscFunctionReturn(0);
+  PetscCall(PetscFree3(heterogeneous->tissues, heterogeneous->points, heterogeneous->number));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
 }
@@ -271,15 +273,15 @@ PetscInt LamHeterogeneousPointCount(PetscInt n, const LamHeterogeneousPoint poin
 }
 
 /* Numbers the points of each tissue in the order of the body's points. */
-static PetscErrorCode NumberPoints(Mosaic *mosaic)
+static PetscErrorCode NumberPoints(Heterogeneous *heterogeneous)
 {
   PetscInt *next;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mosaic->tissue_count, &next));
-  for (PetscInt p = 0; p < mosaic->n; p++)
-    for (PetscInt k = 0; k < mosaic->points[p].count; k++)
-      mosaic->number[p][k] = next[mosaic->points[p].term[k].knot]++;
+  PetscCall(PetscCalloc1(heterogeneous->tissue_count, &next));
+  for (PetscInt p = 0; p < heterogeneous->n; p++)
+    for (PetscInt k = 0; k < heterogeneous->points[p].count; k++)
+      heterogeneous->number[p][k] = next[heterogeneous->points[p].term[k].knot]++;
   PetscCall(PetscFree(next));
   PetscFunctionReturn(0);
 }
@@ -287,24 +289,24 @@ static PetscErrorCode NumberPoints(Mosaic *mosaic)
 PetscErrorCode LamHeterogeneousCreate(PetscInt tissue_count, const LamHeterogeneousTissue tissues[], PetscInt n,
                                       const LamHeterogeneousPoint points[], LamResponder *responder)
 {
-  static const LamResponderFunctions functions = {.respond = MosaicRespond,
-                                                  .accept = MosaicAccept,
-                                                  .reject = MosaicReject,
-                                                  .seal = MosaicSeal,
-                                                  .destroy = MosaicDestroy,
+  static const LamResponderFunctions functions = {.respond = HeterogeneousRespond,
+                                                  .accept = HeterogeneousAccept,
+                                                  .reject = HeterogeneousReject,
+                                                  .seal = HeterogeneousSeal,
+                                                  .destroy = HeterogeneousDestroy,
                                                   .state_size = StateSize,
                                                   .save = Save,
                                                   .load = Load};
-  Mosaic *mosaic;
+  Heterogeneous *heterogeneous;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&mosaic));
-  mosaic->tissue_count = tissue_count;
-  mosaic->n = n;
-  PetscCall(PetscMalloc3(tissue_count, &mosaic->tissues, n, &mosaic->points, n, &mosaic->number));
-  PetscCall(PetscArraycpy(mosaic->tissues, tissues, tissue_count));
-  PetscCall(PetscArraycpy(mosaic->points, points, n));
-  PetscCall(NumberPoints(mosaic));
-  PetscCall(LamResponderCreate(&functions, mosaic, &mosaic->counters, responder));
+  PetscCall(PetscNew(&heterogeneous));
+  heterogeneous->tissue_count = tissue_count;
+  heterogeneous->n = n;
+  PetscCall(PetscMalloc3(tissue_count, &heterogeneous->tissues, n, &heterogeneous->points, n, &heterogeneous->number));
+  PetscCall(PetscArraycpy(heterogeneous->tissues, tissues, tissue_count));
+  PetscCall(PetscArraycpy(heterogeneous->points, points, n));
+  PetscCall(NumberPoints(heterogeneous));
+  PetscCall(LamResponderCreate(&functions, heterogeneous, &heterogeneous->counters, responder));
   PetscFunctionReturn(0);
 }

@@ -163,10 +163,11 @@ PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal val
   LamBlend(n, terms, at, response);
   if (response->error_estimate > accuracy) {
     response->status = LAM_OUT_OF_REACH;
-    snprintf(response->reason, sizeof(response->reason),
-             "the estimated error between the databases is %.2g %%, %.2g %% is asked; one more database between them "
-             "helps",
-             100 * response->error_estimate, 100 * accuracy);
+    snprintf(
+        response->reason, sizeof(response->reason),
+        "the estimated error between the databases is %.2g %%, the accuracy is %.2g %%; one more database between them "
+        "helps",
+        100 * response->error_estimate, 100 * accuracy);
   }
   PetscFunctionReturn(0);
 }

@@ -122,33 +122,33 @@ static PetscErrorCode Finish(Sealed *s, PetscInt point, const LamLoad *load, Lam
 static PetscErrorCode Find(Sealed *s, PetscInt n, const LamLoad loads[], const PetscInt points[], Search search[],
                            LamResponse responses[])
 {
-  PetscInt *asked_points, *from, most = 1;
-  LamResponse *answers;
-  LamLoad *asked;
+  PetscInt *query_points, *from, most = 1;
+  LamResponse *found;
+  LamLoad *queries;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &asked, n, &asked_points, n, &from, n, &answers));
+  PetscCall(PetscMalloc4(n, &queries, n, &query_points, n, &from, n, &found));
   for (PetscInt round = 0; round < MOST_QUESTIONS && most; round++) {
     PetscInt count = 0;
 
     for (PetscInt i = 0; i < n; i++) {
       if (search[i].done) continue;
-      asked[count] = loads[i];
-      asked[count].turgor = search[i].pressure;
-      asked_points[count] = points[i];
+      queries[count] = loads[i];
+      queries[count].turgor = search[i].pressure;
+      query_points[count] = points[i];
       from[count++] = i;
     }
     PetscCallMPI(MPI_Allreduce(&count, &most, 1, MPIU_INT, MPI_MAX, s->comm));
     if (!most) break;
-    PetscCall(LamResponderRespond(s->open, count, asked, asked_points, answers));
+    PetscCall(LamResponderRespond(s->open, count, queries, query_points, found));
     for (PetscInt k = 0; k < count; k++) {
       const PetscInt i = from[k];
 
-      responses[i] = answers[k];
-      Advance(s, loads[i].turgor, s->water[points[i]], &answers[k], &search[i]);
+      responses[i] = found[k];
+      Advance(s, loads[i].turgor, s->water[points[i]], &found[k], &search[i]);
     }
   }
-  PetscCall(PetscFree4(asked, asked_points, from, answers));
+  PetscCall(PetscFree4(queries, query_points, from, found));
   PetscFunctionReturn(0);
 }
 
@@ -161,7 +161,7 @@ static PetscErrorCode RespondSealed(Sealed *s, PetscInt n, const LamLoad loads[]
   PetscCall(PetscMalloc1(n, &search));
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(points && points[i] >= 0 && points[i] < s->points, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "a sealed answer needs a material point below %d, whose water it is", (int)s->points);
+               "a sealed response needs a material point below %d, whose water it is", (int)s->points);
     search[i] = (Search){.pressure = s->now[points[i]].pressure, .low = -INFINITY, .high = INFINITY, .answered = NAN};
   }
   PetscCall(Find(s, n, loads, points, search, responses));
@@ -223,7 +223,7 @@ static PetscErrorCode Seal(void *ctx, PetscReal bulk_modulus)
              "bulk modulus of water %g; it must be positive and finite", (double)bulk_modulus);
   for (PetscInt i = 0; i < s->points; i++) {
     PetscCheck(s->accepted[i].lumen > 0, PETSC_COMM_SELF, PETSC_ERR_ORDER,
-               "material point %d has no accepted answer whose water it could keep", (int)i);
+               "material point %d has no accepted response whose water it could keep", (int)i);
     s->water[i] = s->accepted[i].lumen;
   }
   s->bulk_modulus = bulk_modulus;

@@ -220,7 +220,7 @@ PetscErrorCode LamSceneBuildRegions(const LamNode *root, LamScene *scene)
   PetscFunctionBeginUser;
   if (!scene->has_macro) PetscFunctionReturn(0);
   if (list) PetscCall(PetscCalloc1(LAM_MAX_REGIONS, &scene->regions));
-  LamSceneCheck(!list || list->count <= LAM_MAX_REGIONS, list, "has %d regions; at most %d can be told apart",
+  LamSceneCheck(!list || list->count <= LAM_MAX_REGIONS, list, "has %d regions; at most %d can be distinguished",
                 (int)list->count, (int)LAM_MAX_REGIONS);
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
     LamRegion *region = &scene->regions[scene->region_count];

@@ -110,7 +110,8 @@ PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal a
   json_decref(root);
   PetscCall(ierr);
   PetscCheck(isfinite(fastest), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: none of its meshes has an error below the accuracy of %g; the least is %g. Ask for less, or leave "
+             "%s: none of its meshes has an error below the accuracy of %g; the least is %g. Write a larger accuracy, "
+             "or leave "
              "`measured` out",
              path, (double)accuracy, least);
   PetscFunctionReturn(0);

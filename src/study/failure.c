@@ -267,7 +267,7 @@ static PetscErrorCode KeepReason(LamFailure *failure, PetscReal factor, const La
   const PetscInt m = LamResponseHasFields(&responses[0]) ? 1 : 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason), "load factor %.4g has no answer%s: %s",
+  PetscCall(PetscSNPrintf(failure->reason, sizeof(failure->reason), "load factor %.4g has no response%s: %s",
                           (double)factor, m ? " on the second mesh" : "", responses[m].reason));
   PetscFunctionReturn(0);
 }

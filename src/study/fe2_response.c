@@ -199,7 +199,7 @@ static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
   FE².
 */
 #define EVEN_ALONG 12 /* elements along a face */
-static PetscReal AnswerAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
+static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
 {
   const LamScene *scene = &tissue->scene;
   const PetscBool contact =
@@ -221,7 +221,7 @@ PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResp
     PetscCall(CreateNodeSolver(tissue));
   }
   PetscCall(LamCacheResponderCreate(run->comm, tissue->database, tissue->direct, &tissue->nodes,
-                                    tissue->scene.response.outside, AnswerAccuracy(run, tissue), tissue->points,
+                                    tissue->scene.response.outside, QueryAccuracy(run, tissue), tissue->points,
                                     &tissue->cache));
   *responder = tissue->cache;
   PetscFunctionReturn(0);
@@ -243,8 +243,8 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
     parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, responder};
   }
   if (!run->stopped && !tissues->plain) {
-    PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->mosaic));
-    responder = run->mosaic;
+    PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->heterogeneous));
+    responder = run->heterogeneous;
   }
   PetscCall(PetscFree(parts));
   if (!run->stopped) PetscCall(LamMacroSetResponder(run->macro, responder));
@@ -268,7 +268,7 @@ PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamResponderDestroy(&run->mosaic));
+  PetscCall(LamResponderDestroy(&run->heterogeneous));
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2DisconnectTissue(&run->tissues.tissues[t]));
   PetscCall(LamFE2TissuesDestroy(&run->tissues));
   PetscFunctionReturn(0);

@@ -50,7 +50,7 @@ typedef struct LamFE2Run_s {
   PetscReal saved, save_seconds, all_save_seconds; /* time of the last checkpoint; its duration; duration of all, s */
   LamArchive archive;                              /* the checkpoint to resume from, until it is read; NULL: none */
   LamFE2Tissues tissues;
-  LamResponder mosaic; /* responder for several tissues; NULL: not in use */
+  LamResponder heterogeneous; /* responder for several tissues; NULL: not in use */
 
   /* rank 0 only */
   LamFE2File out;

@@ -286,7 +286,7 @@ static PetscErrorCode SetReason(const LamScene *scene, const Path *path, const L
   const char *why = strstr(failure->reason, ": ");
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(point->reason, sizeof(point->reason), "no answer behind load factor %.4g%s",
+  PetscCall(PetscSNPrintf(point->reason, sizeof(point->reason), "no response behind load factor %.4g%s",
                           (double)ShareOfLoad(scene, path, failure->followed), why ? why : ""));
   PetscFunctionReturn(0);
 }

@@ -48,7 +48,7 @@ static PetscErrorCode KeepReason(LamOnset *onset, const char where[], const LamR
   const PetscInt m = LamResponseHasFields(&responses[0]) ? 1 : 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(onset->reason, sizeof(onset->reason), "%s has no answer on the %s mesh: %s", where,
+  PetscCall(PetscSNPrintf(onset->reason, sizeof(onset->reason), "%s has no response on the %s mesh: %s", where,
                           m ? "second" : "first", responses[m].reason));
   PetscFunctionReturn(0);
 }

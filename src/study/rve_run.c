@@ -74,7 +74,7 @@ static void CountDoubts(LamRVERun *run, const LamResponse *response)
   run->most_kinked = PetscMax(run->most_kinked, response->kinked_fraction);
 }
 
-static void TellDoubts(const LamRVERun *run)
+static void ReportDoubts(const LamRVERun *run)
 {
   if (run->inaccurate)
     LamReportNote(&run->reporter,
@@ -116,7 +116,7 @@ static PetscErrorCode SolveStates(LamRVERun *run)
     if (run->state) PetscCall(run->state(run->reporter.ctx, run, responses));
     PetscCall(LamReportProgress(&run->reporter, run->solved, run->scene->load_count, run->failed));
   }
-  TellDoubts(run);
+  ReportDoubts(run);
   PetscFunctionReturn(0);
 }
 

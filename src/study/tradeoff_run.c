@@ -216,7 +216,7 @@ static PetscErrorCode Prepare(LamTradeoff *t)
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &t->reporter, &t->scene->micro, t->scene->accuracy));
   PetscCall(LamStatesMake(t->scene, &t->states));
   PetscCheck(t->states.n || IsStopped(), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: no state of its block load has an answer on the planned mesh", t->scene_path);
+             "%s: no state of its block load has a response on the planned mesh", t->scene_path);
   for (int k = 0; k < LAM_KNOB_COUNT; k++) {
     if (!t->chosen[k])
       t->why[k] = "not asked for";

@@ -36,7 +36,7 @@ static const char *WhyNotCells(const LamMicrostructure *micro)
 static const char *WhyNotTable(const LamScene *scene)
 {
   if (!scene->has_sample) return "the scene has no block sample";
-  if (scene->sealed) return "a table does not answer for sealed cells";
+  if (scene->sealed) return "a table has no responses of sealed cells";
   return NULL;
 }
 

@@ -333,7 +333,7 @@ static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
   if (!place->floating && !place->good)
     return Refuse(r, "the states around are not all of one kind: cells buckle, lose contact or have no solution here");
   if (r->error_estimate <= accuracy) return PETSC_TRUE;
-  return Refuse(r, "the estimated error is %.2g %%, %.2g %% is asked", 100 * r->error_estimate, 100 * accuracy);
+  return Refuse(r, "the estimated error is %.2g %%, the accuracy is %.2g %%", 100 * r->error_estimate, 100 * accuracy);
 }
 
 static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)

@@ -186,7 +186,7 @@ static PetscErrorCode AnswerLinear(const Scheme *scheme, const LamLoad *load, Pe
 
 /* ---- blend and table ---- */
 
-static PetscErrorCode AnswerBlend(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
+static PetscErrorCode RespondFromBlend(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, r));
@@ -302,7 +302,7 @@ static PetscErrorCode SolveHeldOut(Bench *bench)
 static PetscErrorCode CompareScattered(Bench *bench)
 {
   Scheme linear = {.name = "linear", .answer = AnswerLinear};
-  Scheme blend = {.name = "blend", .answer = AnswerBlend, .estimates = PETSC_TRUE};
+  Scheme blend = {.name = "blend", .answer = RespondFromBlend, .estimates = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseCreateEmpty(bench->scene, &linear.database));

@@ -64,9 +64,9 @@ expect 0 -o 'not met' "$lamella" rve scene.yaml --onset
 # what is not known is not called "not met": walls fill more than the area that is left, so the second state fails
 scene "0.001 MPa" "{F: [[1, 0], [0, 1]]}" "{F: [[0.5, 0], [0, 0.5]]}" "{F: [[1, 1e-4], [0, 1]]}"
 expect 3 "$lamella" rve scene.yaml --onset --json
-sed '$!d' out.txt | grep -q '"onset": {"status": "unknown", "reason": "state 2 has no answer on the first mesh: ' ||
+sed '$!d' out.txt | grep -q '"onset": {"status": "unknown", "reason": "state 2 has no response on the first mesh: ' ||
   fail "an onset of which a state is missing: $(sed '$!d' out.txt)"
-expect 3 -o 'onset of separation: unknown, .*state 2 has no answer' "$lamella" rve scene.yaml --onset
+expect 3 -o 'onset of separation: unknown, .*state 2 has no response' "$lamella" rve scene.yaml --onset
 sed -i '/0.5/d' scene.yaml
 sed -i '$s/$/\n  - {ramp: {to: [[1, 2e-4], [0, 1]], steps: 5000}}/' scene.yaml
 rm out.txt

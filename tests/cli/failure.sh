@@ -58,5 +58,5 @@ verdict factor | awk -v onset="$onset" '{ d = $1 - 1 - onset; if (onset == "" ||
 sed -e '/^strength/d' -e '/ramp/d' -e 's/{F: .*/{F: [[0.3, 0], [0, 2]]}/' "$example" >collapsed.yaml
 expect 3 "$lamella" rve collapsed.yaml --json --failure
 [ "$(verdict mode)" = '"unknown"' ] || fail "a verdict without an answer: $(sed -n '$p' out.txt)"
-sed -n '$p' out.txt | grep -q '"reason": "load factor .* has no answer: the lumen' || fail "no reason: $(sed -n '$p' out.txt)"
+sed -n '$p' out.txt | grep -q '"reason": "load factor .* has no response: the lumen' || fail "no reason: $(sed -n '$p' out.txt)"
 verdict followed | awk '!($1 > 0 && $1 < 1) { exit 1 }' || fail "not followed as far as there are answers"

@@ -11,7 +11,7 @@
 #define FILE_NAME "database.h5"
 #define MERGED_NAME "merged.h5"
 
-static PetscErrorCode AskAll(LamDatabase database)
+static PetscErrorCode QueryAll(LamDatabase database)
 {
   const PetscReal shears[] = {0, 0.01, 0.1, 0.2};
 
@@ -34,7 +34,7 @@ static PetscErrorCode Use(LamDatabase database, int question)
 
   PetscFunctionBeginUser;
   if (question % 3 == 0) PetscCall(LamDatabaseGetInfo(database, &info));
-  if (question % 3 == 1) PetscCall(AskAll(database));
+  if (question % 3 == 1) PetscCall(QueryAll(database));
   if (question % 3 == 2) PetscCall(LamDatabaseGetRecords(database, &n, &records, &keys));
   PetscFunctionReturn(0);
 }

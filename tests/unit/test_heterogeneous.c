@@ -9,7 +9,7 @@
 enum { TISSUES = 3, POINTS = 4 };
 
 typedef struct {
-  LamResponder responder[TISSUES], mosaic;
+  LamResponder responder[TISSUES], heterogeneous;
   Synthetic *material[TISSUES];
   LamHeterogeneousTissue tissues[TISSUES];
 } Fixture;
@@ -55,12 +55,12 @@ static void SetUp(Fixture *fixture)
     fixture->material[t]->mu = 1 + t;
     fixture->tissues[t] = (LamHeterogeneousTissue){names[t], stress[t], fixture->responder[t]};
   }
-  assert_int_equal(LamHeterogeneousCreate(TISSUES, fixture->tissues, POINTS, points, &fixture->mosaic), 0);
+  assert_int_equal(LamHeterogeneousCreate(TISSUES, fixture->tissues, POINTS, points, &fixture->heterogeneous), 0);
 }
 
 static void TearDown(Fixture *fixture)
 {
-  assert_int_equal(LamResponderDestroy(&fixture->mosaic), 0);
+  assert_int_equal(LamResponderDestroy(&fixture->heterogeneous), 0);
   for (int t = 0; t < TISSUES; t++) assert_int_equal(LamResponderDestroy(&fixture->responder[t]), 0);
 }
 
@@ -70,7 +70,7 @@ static LamResponse Ask(Fixture *fixture, PetscInt point, LamLoad load)
 {
   LamResponse response;
 
-  assert_int_equal(LamResponderRespond(fixture->mosaic, 1, &load, &point, &response), 0);
+  assert_int_equal(LamResponderRespond(fixture->heterogeneous, 1, &load, &point, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
   return response;
 }
@@ -153,17 +153,18 @@ MOSAIC_TEST(each_tissue_is_asked_once_and_told_of_the_end)
   uint64_t seed = 9;
 
   for (int p = 0; p < POINTS; p++) loads[p] = RandomLoad(&seed);
-  assert_int_equal(LamResponderRespond(fixture->mosaic, POINTS, loads, all, responses), 0);
-  assert_int_equal(LamResponderRespond(fixture->mosaic, 0, NULL, NULL, NULL), 0);
-  assert_int_equal(LamResponderAccept(fixture->mosaic), 0);
-  assert_int_equal(LamResponderReject(fixture->mosaic), 0);
+  assert_int_equal(LamResponderRespond(fixture->heterogeneous, POINTS, loads, all, responses), 0);
+  assert_int_equal(LamResponderRespond(fixture->heterogeneous, 0, NULL, NULL, NULL), 0);
+  assert_int_equal(LamResponderAccept(fixture->heterogeneous), 0);
+  assert_int_equal(LamResponderReject(fixture->heterogeneous), 0);
   for (int t = 0; t < TISSUES; t++) {
     assert_int_equal(fixture->material[t]->calls, 2);
     assert_int_equal(fixture->material[t]->accepts, 1);
     assert_int_equal(fixture->material[t]->rejects, 1);
   }
-  assert_int_equal(LamResponderGetCounters(fixture->mosaic).queries, 6); /* the blended point asks three tissues */
-  assert_int_equal(LamResponderGetCounters(fixture->mosaic).solves, 6);
+  assert_int_equal(LamResponderGetCounters(fixture->heterogeneous).queries,
+                   6); /* the blended point asks three tissues */
+  assert_int_equal(LamResponderGetCounters(fixture->heterogeneous).solves, 6);
 }
 
 MOSAIC_TEST(a_term_without_answer_is_named)
@@ -173,7 +174,7 @@ MOSAIC_TEST(a_term_without_answer_is_named)
   LamResponse response;
 
   fixture->material[1]->largest_strain = 0.1;
-  assert_int_equal(LamResponderRespond(fixture->mosaic, 1, &load, &blended, &response), 0);
+  assert_int_equal(LamResponderRespond(fixture->heterogeneous, 1, &load, &blended, &response), 0);
   assert_int_equal(response.status, LAM_NOT_CONVERGED);
   assert_string_equal(response.reason, "skin: too far");
   for (int k = 0; k < 9; k++) assert_true(response.load.F[k] == load.F[k]);

@@ -88,7 +88,7 @@ TEST(a_slice_holds_the_answers_of_the_tissue)
     LamResponse truth;
     PetscReal square = 0;
 
-    if (slice.verdict[at] != LAM_SLICE_ANSWERED) continue;
+    if (slice.verdict[at] != LAM_SLICE_RESPONDS) continue;
     compared++;
     CHECK(LamResponseInit(&load, &truth));
     SyntheticEvaluate(&Material, &load, &truth);
@@ -113,7 +113,7 @@ TEST(thirty_degrees_are_zero_across)
   for (PetscInt i = 0; i < n; i += 7)
     for (PetscInt j = 0; j < n; j += 5) {
       assert_int_equal(zero.verdict[j * n + i], thirty.verdict[i * n + j]);
-      if (zero.verdict[j * n + i] != LAM_SLICE_ANSWERED) continue;
+      if (zero.verdict[j * n + i] != LAM_SLICE_RESPONDS) continue;
       assert_near(zero.value[LAM_SLICE_ERROR][j * n + i], thirty.value[LAM_SLICE_ERROR][i * n + j], 1e-4);
     }
   assert_true(zero.node_count == thirty.node_count);

@@ -185,7 +185,7 @@ TEST(WaterIsTheSameInAllTissues)
   static const LamHeterogeneousPoint mosaic_points[2] = {{1, {{0, 1, 1, 1}}, 0}, {1, {{1, 1, 1, 1}}, 0.5}};
   const LamLoad load = PlaneLoad(1.01, 0.1, 0, 1, 0.3), start = PlaneLoad(1, 0, 0, 1, 0.3);
   const LamLoad loads[2] = {load, load}, starts[2] = {start, start};
-  LamResponder open[2], sealed[2], mosaic;
+  LamResponder open[2], sealed[2], heterogeneous;
   LamHeterogeneousTissue tissues[2];
   Synthetic *material;
   LamResponse r[2];
@@ -195,17 +195,17 @@ TEST(WaterIsTheSameInAllTissues)
     assert_int_equal(LamSealedResponderCreate(PETSC_COMM_SELF, open[t], 1, &sealed[t]), 0);
     tissues[t] = (LamHeterogeneousTissue){"", 1 + 1.5 * t, sealed[t]};
   }
-  assert_int_equal(LamHeterogeneousCreate(2, tissues, 2, mosaic_points, &mosaic), 0);
-  assert_int_equal(LamResponderRespond(mosaic, 2, starts, points, r), 0);
-  assert_int_equal(LamResponderAccept(mosaic), 0);
-  assert_int_equal(LamResponderSeal(mosaic, 50), 0);
-  assert_int_equal(LamResponderRespond(mosaic, 2, loads, points, r), 0);
+  assert_int_equal(LamHeterogeneousCreate(2, tissues, 2, mosaic_points, &heterogeneous), 0);
+  assert_int_equal(LamResponderRespond(heterogeneous, 2, starts, points, r), 0);
+  assert_int_equal(LamResponderAccept(heterogeneous), 0);
+  assert_int_equal(LamResponderSeal(heterogeneous, 50), 0);
+  assert_int_equal(LamResponderRespond(heterogeneous, 2, loads, points, r), 0);
   for (int t = 0; t < 2; t++) {
     assert_near(r[t].turgor_mean, 0.3 - 50 * 0.01, 1e-9);
     assert_int_equal(LamResponderDestroy(&sealed[t]), 0);
     assert_int_equal(LamResponderDestroy(&open[t]), 0);
   }
-  assert_int_equal(LamResponderDestroy(&mosaic), 0);
+  assert_int_equal(LamResponderDestroy(&heterogeneous), 0);
 }
 
 /* A rejected step leaves no trace in the pressures that questions start from. */

@@ -50,7 +50,7 @@ static const FE2FieldRow FE2Fields[] = {
     SCALAR("lamella_normal_ratio_max", "normal traction over strength, largest", NULL),
     SCALAR("lamella_shear_ratio_max", "shear traction over strength, largest", NULL),
     SCALAR("error_estimate", "estimated error of the stress", NULL),
-    SCALAR("interpolated", "share of interpolated answers", NULL),
+    SCALAR("interpolated", "share of interpolated responses", NULL),
 };
 
 static const double ZoomHeight = 236, CurveHeight = 150; /* of a page with zooms */

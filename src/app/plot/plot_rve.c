@@ -21,8 +21,9 @@ static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
   PetscCheck(p->of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", request->input);
   if (request->state < 0) {
     while (i >= 0 && !LamResponseHasFields(&p->of.records[i])) i--;
-    PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: no state has an answer to draw; the first is %s: %s",
-               request->input, LamStatusNames[p->of.records[0].status], p->of.records[0].reason);
+    PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%s: no state has a response to draw; the first is %s: %s", request->input,
+               LamStatusNames[p->of.records[0].status], p->of.records[0].reason);
   } else {
     while (i >= 0 && p->of.keys[i] != request->state) i--;
     PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,

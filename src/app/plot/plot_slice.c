@@ -254,15 +254,15 @@ static PetscErrorCode CollectNodes(const Nodes *nodes, LamSlice *s)
 
 /* ---- responses ---- */
 
-static LamSliceVerdict VerdictOf(const LamSlice *s, const LamResponse *answer)
+static LamSliceVerdict VerdictOf(const LamSlice *s, const LamResponse *response)
 {
-  if (!LamResponseHasFields(answer))
-    return strstr(answer->reason, "not all of one kind") ? LAM_SLICE_KINK : LAM_SLICE_NOTHING;
-  if (answer->error_estimate > s->accuracy) return LAM_SLICE_INACCURATE;
-  return answer->floating_cells > 0 ? LAM_SLICE_FLOATING : LAM_SLICE_ANSWERED;
+  if (!LamResponseHasFields(response))
+    return strstr(response->reason, "not all of one kind") ? LAM_SLICE_KINK : LAM_SLICE_NOTHING;
+  if (response->error_estimate > s->accuracy) return LAM_SLICE_INACCURATE;
+  return response->floating_cells > 0 ? LAM_SLICE_FLOATING : LAM_SLICE_RESPONDS;
 }
 
-static void KeepAnswer(const LamSlice *s, const LamScales *scales, const LamResponse *r, PetscInt at)
+static void KeepResponse(const LamSlice *s, const LamScales *scales, const LamResponse *r, PetscInt at)
 {
   const PetscReal MPa = scales->stress * 1e-6;
   const PetscReal share = s->interface == LAM_INTERFACE_CONTACT ? r->opening_fraction : r->lumen_fraction;
@@ -273,19 +273,19 @@ static void KeepAnswer(const LamSlice *s, const LamScales *scales, const LamResp
   s->value[LAM_SLICE_INDICATOR][at] = 100 * share;
 }
 
-static PetscErrorCode AskRow(LamTable table, const LamScales *scales, LamSlice *s, PetscInt row)
+static PetscErrorCode QueryRow(LamTable table, const LamScales *scales, LamSlice *s, PetscInt row)
 {
-  LamResponse answer;
+  LamResponse response;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < LAM_SLICE_SAMPLES; i++) {
     const LamLoad load = LoadAt(s, scales, LamSliceStrain(s, i), LamSliceStrain(s, row));
     const PetscInt at = row * LAM_SLICE_SAMPLES + i;
 
-    PetscCall(LamTableQuery(table, &load, PETSC_INFINITY, &answer));
+    PetscCall(LamTableQuery(table, &load, PETSC_INFINITY, &response));
     for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) s->value[k][at] = NAN;
-    if (LamResponseHasFields(&answer)) KeepAnswer(s, scales, &answer, at);
-    s->verdict[at] = VerdictOf(s, &answer);
+    if (LamResponseHasFields(&response)) KeepResponse(s, scales, &response, at);
+    s->verdict[at] = VerdictOf(s, &response);
     s->count[s->verdict[at]]++;
   }
   PetscFunctionReturn(0);
@@ -311,7 +311,7 @@ PetscErrorCode LamSliceRead(const LamPlotRequest *request, LamDatabase database,
   PetscCall(PetscMalloc1(n, &s->verdict));
   for (int k = 0; k < LAM_SLICE_PANEL_COUNT; k++) PetscCall(PetscMalloc1(n, &s->value[k]));
   PetscCall(LamDatabaseGetTable(database, &table));
-  for (PetscInt row = 0; row < LAM_SLICE_SAMPLES; row++) PetscCall(AskRow(table, &nodes.of.scales, s, row));
+  for (PetscInt row = 0; row < LAM_SLICE_SAMPLES; row++) PetscCall(QueryRow(table, &nodes.of.scales, s, row));
   PetscCall(LamTableDestroy(&table));
   PetscFunctionReturn(0);
 }

@@ -8,7 +8,7 @@
 
 /* Result of the query at a point of the slice. */
 typedef enum {
-  LAM_SLICE_ANSWERED,
+  LAM_SLICE_RESPONDS,
   LAM_SLICE_FLOATING,   /* response: floating cells */
   LAM_SLICE_INACCURATE, /* no response to the accuracy, but one without accuracy limit */
   LAM_SLICE_KINK,       /* a change of branch, a loss of contact or a failed node nearby */

@@ -60,7 +60,7 @@ static PetscErrorCode TakeIfSound(void *ctx, const LamRecordLayout *layout, Pets
     PetscCall(TakeRecord(s->merge, layout, number, bytes, NULL));
     s->sound++;
   } else if (s->damaged++ < MOST_NAMED && s->counted) {
-    LamMergeTell(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, number, damage);
+    LamMergeMessage(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, number, damage);
   }
   PetscFunctionReturn(0);
 }
@@ -83,9 +83,9 @@ static PetscErrorCode TakeSound(LamMerge *m, const char path[], hid_t file)
   PetscCall(LamRecordScanClose(path, &scan));
   PetscCall(ierr);
   if (s.counted && s.damaged)
-    LamMergeTell(m, "%s: %" PetscInt_FMT " records are sound, %" PetscInt_FMT " damaged", path, s.sound, s.damaged);
+    LamMergeMessage(m, "%s: %" PetscInt_FMT " records are sound, %" PetscInt_FMT " damaged", path, s.sound, s.damaged);
   if (!s.counted)
-    LamMergeTell(m, "%s: %" PetscInt_FMT " records are sound; its commit counter is damaged", path, s.sound);
+    LamMergeMessage(m, "%s: %" PetscInt_FMT " records are sound; its commit counter is damaged", path, s.sound);
   if (s.counted) m->report->left_out += s.damaged;
   PetscFunctionReturn(0);
 }
@@ -140,14 +140,14 @@ static PetscErrorCode CheckTarget(const LamMerge *m)
 }
 
 /* Reports sources that have a writer. Called with the lock of `out`. */
-static void TellOfWriters(const LamMerge *m)
+static void ReportWriters(const LamMerge *m)
 {
   LamLockHolder holder;
 
   for (PetscInt i = 0; i < m->n; i++)
     if (!IsSameFile(m->out, m->files[i]) && LamLockGetHolder(m->files[i], &holder))
-      LamMergeTell(m, "%s: process %ld on %s is writing to it; what it has committed so far is merged", m->files[i],
-                   holder.pid, holder.host);
+      LamMergeMessage(m, "%s: process %ld on %s is writing to it; what it has committed so far is merged", m->files[i],
+                      holder.pid, holder.host);
 }
 
 /* The files, one per line. */
@@ -197,7 +197,7 @@ static PetscErrorCode MergeLocked(LamMerge *m)
   PetscFunctionBeginUser;
   PetscCall(CheckTarget(m));
   PetscCall(LamMergeReadHeaders(m));
-  TellOfWriters(m);
+  ReportWriters(m);
   PetscCall(StartFile(m));
   for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(LamFileRead(m->files[i], TakeFile, m));
   if (m->report->stopped) PetscFunctionReturn(0);

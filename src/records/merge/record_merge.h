@@ -22,7 +22,7 @@ typedef struct {
 } LamMerge;
 
 /* A message for the user; as printf, without a newline. */
-void LamMergeTell(const LamMerge *merge, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+void LamMergeMessage(const LamMerge *merge, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 /* Reads the headers of all files, and checks their compatibility. */
 PetscErrorCode LamMergeReadHeaders(LamMerge *merge);
 PetscErrorCode LamMergeCheckHash(const LamMerge *merge, const char path[], const char hash[]);

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-void LamMergeTell(const LamMerge *m, const char format[], ...)
+void LamMergeMessage(const LamMerge *m, const char format[], ...)
 {
   char words[1024];
   va_list arguments;
@@ -122,7 +122,7 @@ static PetscErrorCode TakeSource(LamMerge *m, const char path[], Source *s)
   PetscCheck(!strcmp(h->kind, "database"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: is of kind \"%s\"; only databases are merged", path, h->kind);
   if (!s->matches)
-    LamMergeTell(
+    LamMergeMessage(
         m, "%s: the header is damaged (its checksum differs): apothem %g m, C1 + C2 %g Pa, accuracy %g; check them",
         path, (double)h->scales.length, (double)h->scales.stress, (double)h->accuracy);
   if (m->header_from)
@@ -130,8 +130,8 @@ static PetscErrorCode TakeSource(LamMerge *m, const char path[], Source *s)
   else
     PetscCall(TakeFirst(m, path, s));
   if (h->scales.length != m->scene.scales.length || h->scales.stress != m->scene.scales.stress)
-    LamMergeTell(m, "%s: is in other units; the result has those of %s: apothem %g m, C1 + C2 %g Pa", path,
-                 m->header_from, (double)m->scene.scales.length, (double)m->scene.scales.stress);
+    LamMergeMessage(m, "%s: is in other units; the result has those of %s: apothem %g m, C1 + C2 %g Pa", path,
+                    m->header_from, (double)m->scene.scales.length, (double)m->scene.scales.stress);
   m->scene.accuracy = PetscMin(m->scene.accuracy, h->accuracy);
   PetscCall(CheckGrid(m, path, s->grid));
   PetscFunctionReturn(0);
