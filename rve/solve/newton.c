@@ -60,11 +60,6 @@ PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
   PetscFunctionReturn(0);
 }
 
-void LamTrialPosition(LamRVE rve, PetscReal alpha)
-{
-  for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
-}
-
 PetscErrorCode LamFactorShifted(LamRVE rve, PetscReal base, PetscReal next, PetscReal growth, PetscReal *shift,
                                 PetscBool *ok)
 {

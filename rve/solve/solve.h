@@ -41,7 +41,10 @@ PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_sh
    class. */
 PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border);
 /* rve->trial := positions rve->y + alpha rve->step */
-void LamTrialPosition(LamRVE rve, PetscReal alpha);
+static inline void LamTrialPosition(LamRVE rve, PetscReal alpha)
+{
+  for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->y[i] + alpha * rve->step[i];
+}
 /* The first of alpha, alpha/2, ... for which rve->y + alpha rve->step inverts no element volume; 0: none above `least`.
  */
 #define LAM_LEAST_STEP 0.01 /* least share of a step of bonded tissue */

@@ -4,15 +4,6 @@
 #include "database_internal.h"
 #include <string.h>
 
-PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
-{
-  PetscFunctionBeginUser;
-  if (count + n <= *capacity) PetscFunctionReturn(0);
-  *capacity = PetscMax(2 * *capacity, count + n);
-  PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
-  PetscFunctionReturn(0);
-}
-
 /* ---- open, close ---- */
 
 /* Records left out of the database. */

@@ -70,7 +70,14 @@ struct LamDatabase_s {
 
 /* ---- database.c ---- */
 /* Ensures a capacity of count + n items; `items` points to the array. */
-PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items);
+static inline PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, PetscInt *capacity, void *items)
+{
+  PetscFunctionBeginUser;
+  if (count + n <= *capacity) PetscFunctionReturn(0);
+  *capacity = PetscMax(2 * *capacity, count + n);
+  PetscCall(PetscRealloc((size_t)*capacity * size, (void **)items));
+  PetscFunctionReturn(0);
+}
 
 /* ---- images.c ---- */
 void LamImagesMake(const LamMicrostructure *micro, LamImages *images);

@@ -78,16 +78,7 @@ PetscErrorCode LamRowsTransfer(const char path[], hid_t dataset, hid_t type, Pet
 
 /* ---- writing ---- */
 
-typedef struct {
-  const char *name;
-  hid_t file_type, memory_type;
-  PetscInt rank;
-  const PetscInt *dims;
-  const void *values;
-  const char *unit; /* or NULL */
-} Array;
-
-static size_t ArrayCount(const Array *a)
+size_t LamArrayCount(const LamArray *a)
 {
   size_t count = 1;
 
@@ -96,12 +87,12 @@ static size_t ArrayCount(const Array *a)
 }
 
 /* Checksum of the bytes in the file, followed by the unit. */
-static uint32_t ArraySum(const Array *a)
+static uint32_t ArraySum(const LamArray *a)
 {
   uint32_t sum = 0;
 
-  if (a->file_type == H5T_IEEE_F64LE) sum = LamBytesSum(0, a->values, 8 * ArrayCount(a));
-  for (size_t i = 0; a->file_type != H5T_IEEE_F64LE && i < ArrayCount(a); i++) {
+  if (a->file_type == H5T_IEEE_F64LE) sum = LamBytesSum(0, a->values, 8 * LamArrayCount(a));
+  for (size_t i = 0; a->file_type != H5T_IEEE_F64LE && i < LamArrayCount(a); i++) {
     const PetscInt64 value = ((const PetscInt *)a->values)[i];
 
     sum = LamBytesSum(sum, &value, sizeof(value));
@@ -110,7 +101,7 @@ static uint32_t ArraySum(const Array *a)
 }
 
 /* Creates the dataset and its groups. */
-static PetscErrorCode Create(const char path[], hid_t file, const Array *a, uint32_t sum)
+static PetscErrorCode Create(const char path[], hid_t file, const LamArray *a, uint32_t sum)
 {
   hid_t groups, space, dataset;
   hsize_t dims[4];
@@ -131,7 +122,7 @@ static PetscErrorCode Create(const char path[], hid_t file, const Array *a, uint
 
 PetscErrorCode LamFileWriteText(const char path[], hid_t file, const char name[], const char text[])
 {
-  Array array = {.name = name, .values = text};
+  LamArray array = {.name = name, .values = text};
   PetscBool has;
 
   PetscFunctionBeginUser;
@@ -162,7 +153,7 @@ static PetscErrorCode DropSum(const char path[], hid_t file, hid_t dataset)
   Overwrites an array of the same shape and type. Only its numbers change in the file, so a table that grows full
   commit by commit takes no more space, and after a kill each number is either old or new.
 */
-static PetscErrorCode Overwrite(const char path[], hid_t file, const Array *a, PetscBool *done)
+static PetscErrorCode Overwrite(const char path[], hid_t file, const LamArray *a, PetscBool *done)
 {
   hsize_t dims[H5S_MAX_RANK];
   hid_t dataset, space, type;
@@ -181,9 +172,9 @@ static PetscErrorCode Overwrite(const char path[], hid_t file, const Array *a, P
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteArray(const char path[], hid_t file, void *ctx)
+PetscErrorCode LamFileWriteArray(const char path[], hid_t file, void *ctx)
 {
-  const Array *a = ctx;
+  const LamArray *a = ctx;
   PetscBool has, done = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -192,59 +183,6 @@ static PetscErrorCode WriteArray(const char path[], hid_t file, void *ctx)
   if (done) PetscFunctionReturn(0);
   if (has) LamCallHDF5(path, PETSC_ERR_FILE_WRITE, H5Ldelete(file, a->name, H5P_DEFAULT));
   PetscCall(Create(path, file, a, ArraySum(a)));
-  PetscFunctionReturn(0);
-}
-
-/* Reals and integers both have 8 bytes in the file. */
-static PetscErrorCode WriteBeside(LamRecordWriter writer, Array *array)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(array->rank >= 0 && array->rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT,
-             array->rank);
-  PetscCall(LamRecordWriterBeside(writer, 8 * (ArrayCount(array) + 1), WriteArray, array));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRecordWriterReals(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
-                                    const PetscReal values[], const char unit[])
-{
-  Array array = {name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rank, dims, values, unit};
-
-  PetscFunctionBeginUser;
-  PetscCall(WriteBeside(writer, &array));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRecordWriterInts(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
-                                   const PetscInt values[])
-{
-  const hid_t memory = sizeof(PetscInt) == sizeof(PetscInt64) ? H5T_NATIVE_INT64 : H5T_NATIVE_INT;
-  Array array = {name, H5T_STD_I64LE, memory, rank, dims, values, NULL};
-
-  PetscFunctionBeginUser;
-  PetscCall(WriteBeside(writer, &array));
-  PetscFunctionReturn(0);
-}
-
-typedef struct {
-  const char *name, *text;
-} Text;
-
-static PetscErrorCode WriteText(const char path[], hid_t file, void *ctx)
-{
-  const Text *t = ctx;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileWriteText(path, file, t->name, t->text));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], const char text[])
-{
-  Text t = {name, text};
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRecordWriterBeside(writer, strlen(text), WriteText, &t));
   PetscFunctionReturn(0);
 }
 

@@ -102,8 +102,6 @@ PetscErrorCode LamFileSync(const char path[], hid_t file);
 typedef PetscErrorCode (*LamFileFunction)(const char path[], hid_t file, void *ctx);
 PetscErrorCode LamFileRead(const char path[], LamFileFunction read, void *ctx);
 PetscErrorCode LamFileWrite(const char path[], LamFileFunction write, void *ctx);
-/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
-PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_array.c ---- */
 
@@ -122,6 +120,19 @@ PetscErrorCode LamRowsTransfer(const char path[], hid_t dataset, hid_t type, Pet
 
 /* Rejects datasets that Lamella never writes, before any data is read: another layout, filters, data in other files. */
 PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name[], H5D_layout_t wanted);
+
+/* An array to be written. */
+typedef struct {
+  const char *name;
+  hid_t file_type, memory_type;
+  PetscInt rank;
+  const PetscInt *dims;
+  const void *values;
+  const char *unit; /* or NULL */
+} LamArray;
+size_t LamArrayCount(const LamArray *array);
+/* A LamFileFunction; ctx: the LamArray. Reals and integers both have 8 bytes in the file. */
+PetscErrorCode LamFileWriteArray(const char path[], hid_t file, void *ctx);
 
 /* An array in the file. */
 typedef struct {
@@ -187,11 +198,8 @@ PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *match
 PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
 /* Sets the number of committed records and the sum of their checksums; does not sync. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
-
-/* ---- record_write.c ---- */
-
-/* Writes something beside the records, of `bytes` bytes: locks, reserves space, syncs. */
-PetscErrorCode LamRecordWriterBeside(LamRecordWriter writer, size_t bytes, LamFileFunction write, void *ctx);
+/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
+PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_preallocate.c ---- */
 

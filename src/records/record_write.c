@@ -279,7 +279,8 @@ PetscErrorCode LamRecordWriterClose(LamRecordWriter *writer)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRecordWriterBeside(LamRecordWriter w, size_t bytes, LamFileFunction write, void *ctx)
+/* Writes something of `bytes` bytes beside the records: locks, reserves space, syncs. */
+static PetscErrorCode Beside(LamRecordWriter w, size_t bytes, LamFileFunction write, void *ctx)
 {
   PetscErrorCode ierr;
 
@@ -290,5 +291,57 @@ PetscErrorCode LamRecordWriterBeside(LamRecordWriter w, size_t bytes, LamFileFun
   LamLockEndCommit(&w->lock);
   PetscCall(ierr);
   w->written = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteBeside(LamRecordWriter writer, LamArray *array)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(array->rank >= 0 && array->rank <= 4, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "rank %" PetscInt_FMT,
+             array->rank);
+  PetscCall(Beside(writer, 8 * (LamArrayCount(array) + 1), LamFileWriteArray, array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterReals(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                    const PetscReal values[], const char unit[])
+{
+  LamArray array = {name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rank, dims, values, unit};
+
+  PetscFunctionBeginUser;
+  PetscCall(WriteBeside(writer, &array));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterInts(LamRecordWriter writer, const char name[], PetscInt rank, const PetscInt dims[],
+                                   const PetscInt values[])
+{
+  const hid_t memory = sizeof(PetscInt) == sizeof(PetscInt64) ? H5T_NATIVE_INT64 : H5T_NATIVE_INT;
+  LamArray array = {name, H5T_STD_I64LE, memory, rank, dims, values, NULL};
+
+  PetscFunctionBeginUser;
+  PetscCall(WriteBeside(writer, &array));
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  const char *name, *text;
+} Text;
+
+static PetscErrorCode WriteText(const char path[], hid_t file, void *ctx)
+{
+  const Text *t = ctx;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileWriteText(path, file, t->name, t->text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRecordWriterText(LamRecordWriter writer, const char name[], const char text[])
+{
+  Text t = {name, text};
+
+  PetscFunctionBeginUser;
+  PetscCall(Beside(writer, strlen(text), WriteText, &t));
   PetscFunctionReturn(0);
 }
