@@ -11,17 +11,21 @@ typedef struct {
   size_t bytes;
 } Part;
 
+/* Those that a state has: bonded tissue has no multipliers. */
 static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
 {
   PetscInt count = 0;
 
   for (; s; s = s->bonded) {
-    parts[count++] = (Part){s->y, (size_t)s->n * sizeof(*s->y)};
-    parts[count++] = (Part){s->lambda, (size_t)s->multipliers * sizeof(*s->lambda)};
-    parts[count++] = (Part){s->hats, (size_t)s->faces * sizeof(*s->hats)};
-    parts[count++] = (Part){&s->load, sizeof(s->load)};
-    parts[count++] = (Part){&s->branch, sizeof(s->branch)};
-    parts[count++] = (Part){&s->solved, sizeof(s->solved)};
+    const Part all[] = {{s->y, (size_t)s->n * sizeof(*s->y)},
+                        {s->lambda, (size_t)s->multipliers * sizeof(*s->lambda)},
+                        {s->hats, (size_t)s->faces * sizeof(*s->hats)},
+                        {&s->load, sizeof(s->load)},
+                        {&s->branch, sizeof(s->branch)},
+                        {&s->solved, sizeof(s->solved)}};
+
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(all); ++k)
+      if (all[k].bytes) parts[count++] = all[k];
   }
   return count;
 }
