@@ -6,10 +6,9 @@
 */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <lamella/lamella.h>
 #include "error_model.h"
+#include "options.h"
 #include "quantile.h"
 #include "support/random_reals.h"
 #include "support/tissue.h"
@@ -178,21 +177,11 @@ static PetscErrorCode Run(LamInterfaceLawType interface, int states, uint64_t se
 
 int main(int argc, char **argv)
 {
-  LamInterfaceLawType interface = LAM_INTERFACE_BONDED;
-  PetscBool list = PETSC_FALSE;
-  int states = 30;
-  uint64_t seed = 77;
-
-  for (int i = 1; i < argc; i++) {
-    if (!strcmp(argv[i], "--contact")) interface = LAM_INTERFACE_CONTACT;
-    if (!strcmp(argv[i], "--list")) list = PETSC_TRUE;
-    if (!strcmp(argv[i], "--states") && i + 1 < argc) states = atoi(argv[++i]);
-    if (!strcmp(argv[i], "--seed") && i + 1 < argc) seed = (uint64_t)atoi(argv[++i]);
-  }
-  if (states > MOST_STATES) states = MOST_STATES;
-  argc = 1;
-  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  if (Run(interface, states, seed, list)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
+  if (Run(HasOption("--contact") ? LAM_INTERFACE_CONTACT : LAM_INTERFACE_BONDED,
+          NumberOption("--states", 30, 1, MOST_STATES), (uint64_t)NumberOption("--seed", 77, 0, PETSC_MAX_INT),
+          HasOption("--list")))
+    return 1;
+  return EndBench();
 }

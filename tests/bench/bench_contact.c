@@ -6,9 +6,9 @@
       --full        also 288 elements, and the error of the stress against 24 x 8 elements a face; takes minutes
       --repeats N   solves of each state, of which the median time counts; default 1
 */
-#include <getopt.h>
 #include <stdio.h>
 #include "support/contact_tissue.h"
+#include "options.h"
 #include "quantile.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
@@ -313,18 +313,7 @@ static PetscErrorCode Run(int repeats, PetscBool full)
 
 int main(int argc, char **argv)
 {
-  static const struct option options[] = {
-      {"full", no_argument, NULL, 'f'}, {"repeats", required_argument, NULL, 'n'}, {NULL, 0, NULL, 0}};
-  PetscBool full = PETSC_FALSE;
-  int repeats = 1, code;
-
-  while ((code = getopt_long(argc, argv, "", options, NULL)) != -1) {
-    if (code == 'f')
-      full = PETSC_TRUE;
-    else if (code != 'n' || (repeats = atoi(optarg)) < 1 || repeats > REPEATS_MAX)
-      return 1;
-  }
-  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  if (Run(repeats, full)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (Run(NumberOption("--repeats", 1, 1, REPEATS_MAX), HasOption("--full"))) return 1;
+  return EndBench();
 }

@@ -5,8 +5,8 @@
     bench_contact_mesh [--full]
       --full   also 48 x 8 elements a face; takes a minute
 */
-#include <getopt.h>
 #include <stdio.h>
+#include "options.h"
 #include "support/contact_checks.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
@@ -96,14 +96,10 @@ static PetscErrorCode States(int used_meshes)
 
 int main(int argc, char **argv)
 {
-  static const struct option options[] = {{"full", no_argument, NULL, 'f'}, {NULL, 0, NULL, 0}};
-  int used_meshes = MESHES - 1, code;
+  int meshes_used;
 
-  while ((code = getopt_long(argc, argv, "", options, NULL)) != -1) {
-    if (code != 'f') return 1;
-    used_meshes = MESHES;
-  }
-  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  if (States(used_meshes) || Symmetries(used_meshes)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  meshes_used = HasOption("--full") ? MESHES : MESHES - 1;
+  if (States(meshes_used) || Symmetries(meshes_used)) return 1;
+  return EndBench();
 }

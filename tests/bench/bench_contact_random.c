@@ -13,10 +13,10 @@
   with any principal direction, rotation and orientation, t/a from 0.03 to 0.4, turgor up to 0.05 MPa and cohesion up to
   0.01 MPa. Their sum is at least 0.002 MPa in nine states of ten, and zero in the rest.
 */
-#include <getopt.h>
 #include <stdio.h>
 #include <unistd.h>
 #include "support/contact_tissue.h"
+#include "options.h"
 #include "quantile.h"
 #include "support/random_reals.h"
 
@@ -169,40 +169,19 @@ static PetscErrorCode RunBox(Box box, const Options *options)
   PetscFunctionReturn(0);
 }
 
-static PetscBool ReadOptions(int argc, char **argv, Options *options)
-{
-  static const struct option names[] = {
-      {"random", required_argument, NULL, 'n'}, {"first", required_argument, NULL, 'k'},
-      {"along", required_argument, NULL, 'a'},  {"through", required_argument, NULL, 't'},
-      {"seed", required_argument, NULL, 's'},   {NULL, 0, NULL, 0}};
-  int code;
-
-  while ((code = getopt_long(argc, argv, "", names, NULL)) != -1) {
-    if (code == 'n')
-      options->count = atoi(optarg);
-    else if (code == 'k')
-      options->first = atoi(optarg);
-    else if (code == 'a')
-      options->along = atoi(optarg);
-    else if (code == 't')
-      options->through = atoi(optarg);
-    else if (code == 's')
-      options->seed = strtoull(optarg, NULL, 10);
-    else
-      return PETSC_FALSE;
-  }
-  return (PetscBool)(options->count > 0 && options->first >= 0 && options->along > 0 && options->through > 0);
-}
-
 int main(int argc, char **argv)
 {
-  Options options = {50, 0, 6, 2, 1};
+  Options options;
 
-  if (!ReadOptions(argc, argv, &options)) return 1;
-  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  options = (Options){.count = NumberOption("--random", 50, 1, PETSC_MAX_INT),
+                      .first = NumberOption("--first", 0, 0, PETSC_MAX_INT),
+                      .along = NumberOption("--along", 6, 1, PETSC_MAX_INT),
+                      .through = NumberOption("--through", 2, 1, PETSC_MAX_INT),
+                      .seed = (uint64_t)NumberOption("--seed", 1, 0, PETSC_MAX_INT)};
   printf("contact at random states, seed %llu, %d elements\n", (unsigned long long)options.seed,
          6 * options.along * options.through);
   for (int box = 0; box < BOXES; box++)
     if (RunBox((Box)box, &options)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  return EndBench();
 }

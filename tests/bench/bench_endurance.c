@@ -11,10 +11,9 @@
       --kind NAME        states of this kind alone, such as contact
       --time-failures    what each failure costs, and nothing else
 */
-#include <getopt.h>
-#include <string.h>
 #include <time.h>
 #include "support/endurance.h"
+#include "options.h"
 #include "quantile.h"
 
 #define PARTS 10
@@ -23,7 +22,7 @@
 
 typedef struct {
   int states, rebuild_every, kind; /* kind: -1, all */
-  int failures, time_failures;
+  int failures;
 } Options;
 
 /* Of a part of the run. */
@@ -181,31 +180,17 @@ static PetscErrorCode TimeFailures(void)
   PetscFunctionReturn(0);
 }
 
-static int KindOf(const char name[])
-{
-  for (int kind = 0; kind < ENDURANCE_KIND_COUNT; kind++)
-    if (!strcmp(name, endurance_names[kind])) return kind;
-  return -1;
-}
-
 int main(int argc, char **argv)
 {
-  static const struct option names[] = {
-      {"states", required_argument, NULL, 's'},        {"failures", no_argument, NULL, 'f'},
-      {"rebuild-every", required_argument, NULL, 'r'}, {"kind", required_argument, NULL, 'k'},
-      {"time-failures", no_argument, NULL, 't'},       {0}};
-  Options options = {.states = 2000, .kind = -1};
-  int option;
+  Options options;
+  PetscInt kind = -1;
 
-  while ((option = getopt_long(argc, argv, "", names, NULL)) != -1) {
-    if (option == 's') options.states = atoi(optarg);
-    if (option == 'f') options.failures = 1;
-    if (option == 'r') options.rebuild_every = atoi(optarg);
-    if (option == 'k') options.kind = KindOf(optarg);
-    if (option == 't') options.time_failures = 1;
-    if (option == '?') return 1;
-  }
-  if (PetscInitializeNoArguments()) return 1;
-  if (options.time_failures ? TimeFailures() : Endure(&options)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (PetscOptionsGetEList(NULL, NULL, "--kind", endurance_names, ENDURANCE_KIND_COUNT, &kind, NULL)) return 1;
+  options = (Options){.states = NumberOption("--states", 2000, PARTS, PETSC_MAX_INT),
+                      .rebuild_every = NumberOption("--rebuild-every", 0, 0, PETSC_MAX_INT),
+                      .kind = (int)kind,
+                      .failures = HasOption("--failures")};
+  if (HasOption("--time-failures") ? TimeFailures() : Endure(&options)) return 1;
+  return EndBench();
 }

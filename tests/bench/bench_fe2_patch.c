@@ -7,7 +7,7 @@
   minute
       --plot   draws the curves: .png, .svg or .pdf
 */
-#include <getopt.h>
+#include "options.h"
 #include "support/fe2_patch.h"
 #include "plot.h"
 
@@ -227,18 +227,11 @@ static PetscErrorCode Run(PetscBool full, const char figure[])
 
 int main(int argc, char **argv)
 {
-  static const struct option options[] = {
-      {"full", no_argument, NULL, 'f'}, {"plot", required_argument, NULL, 'p'}, {NULL, 0, NULL, 0}};
-  PetscBool full = PETSC_FALSE;
-  const char *figure = NULL;
-  int code;
+  char figure[PETSC_MAX_PATH_LEN];
+  PetscBool plots;
 
-  while ((code = getopt_long(argc, argv, "", options, NULL)) != -1) {
-    if (code != 'f' && code != 'p') return 1;
-    if (code == 'f') full = PETSC_TRUE;
-    if (code == 'p') figure = optarg;
-  }
-  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  if ((figure && LamCanvasCheckPath(figure)) || Run(full, figure)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (PetscOptionsGetString(NULL, NULL, "--plot", figure, sizeof(figure), &plots)) return 1;
+  if ((plots && LamCanvasCheckPath(figure)) || Run(HasOption("--full"), plots ? figure : NULL)) return 1;
+  return EndBench();
 }

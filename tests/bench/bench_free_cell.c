@@ -10,12 +10,11 @@
   state moved apart bit by bit.
 */
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <petsctime.h>
 #include "support/contact_tissue.h"
 #include "free_cell.h"
 #include "lattice_strain.h"
+#include "options.h"
 #include "support/random_reals.h"
 
 #define KNOTS 17
@@ -162,9 +161,7 @@ static PetscErrorCode Run(int count)
 
 int main(int argc, char **argv)
 {
-  const int count = argc == 3 && !strcmp(argv[1], "--random") ? atoi(argv[2]) : 300;
-
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(Run(count));
-  return PetscFinalize();
+  PetscCall(Run(NumberOption("--random", 300, 1, PETSC_MAX_INT)));
+  return EndBench();
 }

@@ -8,9 +8,8 @@
 */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <lamella/lamella.h>
+#include "options.h"
 #include "quantile.h"
 #include "support/random_reals.h"
 #include "support/tissue.h"
@@ -179,21 +178,17 @@ static PetscErrorCode Run(Options *o)
 
 int main(int argc, char **argv)
 {
-  Options o = {.states = 10, .steps = 5, .count = 3, .seed = 20};
+  Options o;
 
-  for (int i = 1; i < argc; i++) {
-    if (!strcmp(argv[i], "--fine")) o.count = MESHES;
-    if (!strcmp(argv[i], "--tension")) o.tension = PETSC_TRUE;
-    if (!strcmp(argv[i], "--graded")) o.graded = PETSC_TRUE;
-    if (!strcmp(argv[i], "--turgor")) o.turgor = PETSC_TRUE;
-    if (!strcmp(argv[i], "--states") && i + 1 < argc) o.states = atoi(argv[++i]);
-    if (!strcmp(argv[i], "--steps") && i + 1 < argc) o.steps = atoi(argv[++i]);
-    if (!strcmp(argv[i], "--seed") && i + 1 < argc) o.seed = (uint64_t)atoi(argv[++i]);
-  }
-  if (o.states > MOST_STATES) o.states = MOST_STATES;
-  argc = 1;
-  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  o = (Options){.states = NumberOption("--states", 10, 1, MOST_STATES),
+                .steps = NumberOption("--steps", 5, 1, PETSC_MAX_INT),
+                .count = HasOption("--fine") ? MESHES : 3,
+                .tension = HasOption("--tension"),
+                .graded = HasOption("--graded"),
+                .turgor = HasOption("--turgor"),
+                .seed = (uint64_t)NumberOption("--seed", 20, 0, PETSC_MAX_INT)};
+  setvbuf(stdout, NULL, _IOLBF, 0); /* it takes minutes: what is there is told */
   if (Run(&o)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  return EndBench();
 }

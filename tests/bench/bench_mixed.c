@@ -5,9 +5,8 @@
       --random N   also N random states of bonded and of contact tissue: solved at prescribed F, then with random
                    components free under the stress that they have, where that is stable
 */
-#include <getopt.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include "options.h"
 #include "support/mixed_control.h"
 #include "support/random_reals.h"
 
@@ -97,14 +96,10 @@ static PetscErrorCode PrintRandom(int n, PetscBool contact)
 
 int main(int argc, char **argv)
 {
-  static const struct option options[] = {{"random", required_argument, NULL, 'r'}, {0}};
-  int n = 0, option;
+  int n;
 
-  while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
-    if (option != 'r') return 1;
-    n = atoi(optarg);
-  }
-  if (PetscInitializeNoArguments()) return 1;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  n = NumberOption("--random", 0, 0, PETSC_MAX_INT);
   if (PrintCases()) return 1;
   if (n > 0) {
     printf(
@@ -113,5 +108,5 @@ int main(int argc, char **argv)
         "tissue", "solved", "failed", "P off by", "<= 0", "<= 3", "<= 10", "<= 30", "<= 100", "more");
     if (PrintRandom(n, PETSC_FALSE) || PrintRandom(n, PETSC_TRUE)) return 1;
   }
-  return PetscFinalize() ? 1 : 0;
+  return EndBench();
 }

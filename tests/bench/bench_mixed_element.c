@@ -4,7 +4,7 @@
     bench_mixed_element [--rve]     with --rve also with responses of the RVE: a minute
 */
 #include <stdio.h>
-#include <string.h>
+#include "options.h"
 #include "support/mixed_element.h"
 #include "support/tissue.h"
 
@@ -143,12 +143,10 @@ static PetscErrorCode PrintTissue(void)
 
 int main(int argc, char **argv)
 {
-  const PetscBool tissue = (PetscBool)(argc > 1 && !strcmp(argv[1], "--rve"));
-
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(PrintOrders());
   PetscCall(PrintLocking());
   PetscCall(PrintNewton());
-  if (tissue) PetscCall(PrintTissue());
-  return PetscFinalize();
+  if (HasOption("--rve")) PetscCall(PrintTissue());
+  return EndBench();
 }

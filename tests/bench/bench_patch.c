@@ -7,9 +7,9 @@
     bench_patch [--full]
       --full   also blocks of more than 8 x 8 cells, empty ones up to a shear of 0.25 (minutes)
 */
-#include <getopt.h>
 #include <stdio.h>
 #include <sys/resource.h>
+#include "options.h"
 #include "support/uneven_cells.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
@@ -205,15 +205,7 @@ static PetscErrorCode Run(PetscBool full)
 
 int main(int argc, char **argv)
 {
-  static const struct option options[] = {{"full", no_argument, NULL, 'f'}, {NULL, 0, NULL, 0}};
-  PetscBool full = PETSC_FALSE;
-  int code;
-
-  while ((code = getopt_long(argc, argv, "", options, NULL)) != -1) {
-    if (code != 'f') return 1;
-    full = PETSC_TRUE;
-  }
-  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
-  if (Run(full)) return 1;
-  return PetscFinalize() ? 1 : 0;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (Run(HasOption("--full"))) return 1;
+  return EndBench();
 }

@@ -27,6 +27,7 @@
 #include <lamella/lamella.h>
 #include "build.h"
 #include "database_internal.h"
+#include "options.h"
 #include "quantile.h"
 #include "support/tissue.h"
 
@@ -459,10 +460,11 @@ int main(int argc, char **argv)
   static const PetscReal coarse[] = {0.03, 0.01, 0}, coarser[] = {0.1, 0}, fine[] = {0.1, 0.03, 0.01, 0.003, 0.001, 0};
   static const Extent quick[] = {{200, 200, few, coarse, 100}, {60, 100, fewer, coarser, 250}}; /* bonded, contact */
   static const Extent whole[] = {{2000, 2000, many, fine, 1000}, {200, 500, many, fine, 1000}};
-  const PetscBool full = (PetscBool)(argc > 1 && !strcmp(argv[1], "--full"));
+  PetscBool full;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  full = HasOption("--full");
   for (size_t i = 0; i < sizeof(tissues) / sizeof(tissues[0]); i++)
     if (Compare(&tissues[i], &(full ? whole : quick)[tissues[i].contact])) return 1;
-  return PetscFinalize() ? 1 : 0;
+  return EndBench();
 }
