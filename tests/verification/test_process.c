@@ -3,8 +3,101 @@
 */
 #include "support/test.h"
 #include "support/rve_fixture.h"
-#include "support/process_fixture.h"
 #include <lamella/study.h>
+#include <stdio.h>
+
+/* ---- a scene's process, followed with direct solves ---- */
+
+enum { FOLLOWED_STATES = 4000 };
+
+/* The default tissue of one cell, which all scenes begin with. */
+#define PROCESS_CELL                                                                                                   \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
+  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"                                         \
+  "  mesh: {along: 4, through: 1}\n"
+typedef struct {
+  LamScene *scene;
+  LamRVE rve;
+  LamResponder direct;
+  LamProcess process;
+  LamProcessReason reason;
+  char message[LAM_PROCESS_MESSAGE];
+  PetscInt count;
+  LamProcessState *states; /* [FOLLOWED_STATES] */
+} Followed;
+
+static PetscErrorCode KeepState(const LamProcessState *state, void *ctx)
+{
+  Followed *f = (Followed *)ctx;
+
+  assert_true(f->count < FOLLOWED_STATES);
+  f->states[f->count++] = *state;
+  return 0;
+}
+
+static PetscErrorCode ChangeModuli(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+{
+  Followed *f = (Followed *)ctx;
+  LamMicrostructure micro = f->scene->micro;
+
+  LamWallMultiply(&micro.wall, factor);
+  return LamRVEChangeModuli(f->rve, &micro);
+}
+
+static Followed Follow(const char text[])
+{
+  char whole[4096];
+  Followed f = {0};
+
+  snprintf(whole, sizeof(whole), PROCESS_CELL "%s", text);
+  assert_int_equal(LamSceneReadText("process.yaml", whole, &f.scene), 0);
+  f.states = (LamProcessState *)calloc(FOLLOWED_STATES, sizeof(LamProcessState));
+  assert_non_null(f.states);
+  assert_int_equal(NewTissue(&f.scene->micro, &f.rve, NULL), 0);
+  assert_int_equal(LamRVEResponderCreate(f.rve, 1, &f.direct), 0);
+  assert_int_equal(LamProcessCreate(f.scene, &f.process), 0);
+  assert_int_equal(LamProcessSetResponder(f.process, f.direct), 0);
+  assert_int_equal(LamProcessSetWalls(f.process, ChangeModuli, &f), 0);
+  assert_int_equal(LamProcessSetMonitor(f.process, KeepState, &f), 0);
+  assert_int_equal(LamProcessRun(f.process, &f.reason, f.message), 0);
+  return f;
+}
+
+/* The same, where it must come to its end. */
+static Followed FollowToEnd(const char text[])
+{
+  const Followed f = Follow(text);
+
+  if (f.reason != LAM_PROCESS_DONE) fail_msg("%s", f.message);
+  return f;
+}
+
+static void Forget(Followed *f)
+{
+  assert_int_equal(LamProcessDestroy(&f->process), 0);
+  assert_int_equal(LamResponderDestroy(&f->direct), 0);
+  assert_int_equal(LamRVEDestroy(&f->rve), 0);
+  assert_int_equal(LamSceneDestroy(&f->scene), 0);
+  free(f->states);
+}
+
+static const LamProcessState *LastState(const Followed *f)
+{
+  return &f->states[f->count - 1];
+}
+
+/* The first state at an event; NULL: it did not happen. */
+static const LamProcessState *FindEvent(const Followed *f, LamEvent event)
+{
+  for (PetscInt k = 0; k < f->count; k++)
+    if (f->states[k].event == event) return &f->states[k];
+  return NULL;
+}
+
+/* FOLLOWED f = Follow(text): forgotten where the block ends. */
+#define FOLLOWED OWNED(Followed, Forget)
 
 /* ---- water ---- */
 
@@ -25,16 +118,15 @@ static PetscReal FreeLumen(LamRVE rve, PetscReal turgor)
 /* ln 2 V / (A Lp (epsilon + pi)) of a free cell, epsilon = V dp/dV, by differences of fresh solves. */
 TEST(turgor_relaxes_with_the_half_time_of_a_free_cell)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                               "process:\n"
-                               "  duration: 5 h\n"
-                               "  output: 50 s\n"
-                               "  tolerance: 1e-9\n"
-                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                               "  surroundings:\n"
-                               "    - {time: 0 s, outside: 0.4 MPa}\n"
-                               "    - {time: 0 s, outside: 0.4001 MPa}\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.1 MPa}\n"
+                           "process:\n"
+                           "  duration: 5 h\n"
+                           "  output: 50 s\n"
+                           "  tolerance: 1e-9\n"
+                           "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                           "  surroundings:\n"
+                           "    - {time: 0 s, outside: 0.4 MPa}\n"
+                           "    - {time: 0 s, outside: 0.4001 MPa}\n");
   const PetscReal p = f.scene->turgor, dp = 1e-3 * p, MPa = f.scene->scales.stress;
   const PetscReal v = FreeLumen(f.rve, p), epsilon = v * 2 * dp / (FreeLumen(f.rve, p + dp) - FreeLumen(f.rve, p - dp));
   const PetscReal pi = 0.5e6 / MPa, area = 2 * (1 - 0.15), Lp = 1e-13 * MPa / f.scene->scales.length;
@@ -47,17 +139,16 @@ TEST(turgor_relaxes_with_the_half_time_of_a_free_cell)
 
 TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                               "process:\n"
-                               "  duration: 20 min\n"
-                               "  output: 2 s\n"
-                               "  tolerance: 1e-8\n"
-                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, "
-                               "non_osmotic: 0.1}\n"
-                               "  surroundings:\n"
-                               "    - {time: 0 s, outside: 0.4 MPa, temperature: 20 degC}\n"
-                               "    - {time: 600 s, outside: 0.2 MPa, temperature: 40 degC}\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.1 MPa}\n"
+                           "process:\n"
+                           "  duration: 20 min\n"
+                           "  output: 2 s\n"
+                           "  tolerance: 1e-8\n"
+                           "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, "
+                           "non_osmotic: 0.1}\n"
+                           "  surroundings:\n"
+                           "    - {time: 0 s, outside: 0.4 MPa, temperature: 20 degC}\n"
+                           "    - {time: 600 s, outside: 0.2 MPa, temperature: 40 degC}\n");
   const PetscReal start = f.states[0].water, dead = 0.1 * start, k = f.scene->process.water.permeability * 2 * 0.85;
   PetscReal flowed = 0;
 
@@ -80,22 +171,22 @@ TEST(solutes_are_conserved_and_the_flow_makes_up_the_volume)
 }
 
 #define BATH(permeability)                                                                                             \
-  PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"                                                                       \
-               "process:\n"                                                                                            \
-               "  duration: 10 h\n"                                                                                    \
-               "  tolerance: 1e-8\n"                                                                                   \
-               "  water: {permeability: " permeability ", osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"              \
-               "  surroundings:\n"                                                                                     \
-               "    - {time: 0 h, outside: 0.4 MPa}\n"                                                                 \
-               "    - {time: 1 h, outside: 0.4 MPa}\n"                                                                 \
-               "    - {time: 1 h, outside: 1.5 MPa}\n"                                                                 \
-               "    - {time: 5 h, outside: 1.5 MPa}\n"                                                                 \
-               "    - {time: 5 h, outside: 0.3 MPa}\n"
+  "  turgor: {pressure: 0.1 MPa}\n"                                                                                    \
+  "process:\n"                                                                                                         \
+  "  duration: 10 h\n"                                                                                                 \
+  "  tolerance: 1e-8\n"                                                                                                \
+  "  water: {permeability: " permeability ", osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"                           \
+  "  surroundings:\n"                                                                                                  \
+  "    - {time: 0 h, outside: 0.4 MPa}\n"                                                                              \
+  "    - {time: 1 h, outside: 0.4 MPa}\n"                                                                              \
+  "    - {time: 1 h, outside: 1.5 MPa}\n"                                                                              \
+  "    - {time: 5 h, outside: 1.5 MPa}\n"                                                                              \
+  "    - {time: 5 h, outside: 0.3 MPa}\n"
 
 /* In a bath that draws more than the turgor the membranes leave the walls; the protoplast then is an osmometer. */
 TEST(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff)
 {
-  OWNED(Followed, Forget) f = FollowToEnd(BATH("4e-7 m/s/MPa"));
+  FOLLOWED f = FollowToEnd(BATH("4e-7 m/s/MPa"));
   const LamProcessState *lost = FindEvent(&f, LAM_EVENT_TURGOR_LOST), *found = FindEvent(&f, LAM_EVENT_TURGOR_FOUND),
                         *before = NULL;
   const PetscReal v = f.states[0].water;
@@ -114,7 +205,7 @@ TEST(a_plasmolysed_protoplast_follows_boyle_and_van_t_hoff)
 
 TEST(membranes_that_let_nothing_pass_keep_the_water)
 {
-  OWNED(Followed, Forget) f = FollowToEnd(BATH("0 m/s/MPa"));
+  FOLLOWED f = FollowToEnd(BATH("0 m/s/MPa"));
 
   for (PetscInt i = 0; i < f.count; i++) {
     assert_near(f.states[i].water / f.states[0].water, 1, 1e-9);
@@ -124,7 +215,7 @@ TEST(membranes_that_let_nothing_pass_keep_the_water)
 
 TEST(membranes_without_resistance_are_in_equilibrium_at_any_time)
 {
-  OWNED(Followed, Forget) f = FollowToEnd(BATH("infinite"));
+  FOLLOWED f = FollowToEnd(BATH("infinite"));
 
   for (PetscInt i = 0; i < f.count; i++) {
     const LamProcessState *s = &f.states[i];
@@ -138,19 +229,19 @@ TEST(membranes_without_resistance_are_in_equilibrium_at_any_time)
 /* ---- kinetics ---- */
 
 #define CHANGES                                                                                                        \
-  PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"                                                     \
-               "  turgor: {pressure: 0.05 MPa}\n"                                                                      \
-               "process:\n"                                                                                            \
-               "  duration: 4 day\n"                                                                                   \
-               "  output: 1 day\n"                                                                                     \
-               "  tolerance: 1e-7\n"                                                                                   \
-               "  inflate: false\n"                                                                                    \
-               "  program: [{for: 0 s, F: [[1.02, 0], [0, 1.02]]}]\n"                                                  \
-               "  surroundings:\n"                                                                                     \
-               "    - {time: 0 day, temperature: 20 degC}\n"                                                           \
-               "    - {time: 2 day, temperature: 20 degC}\n"                                                           \
-               "    - {time: 2 day, temperature: 30 degC}\n"                                                           \
-               "  kinetics:\n"
+  "  interface: {law: contact, cohesion: 0.02 MPa}\n"                                                                  \
+  "  turgor: {pressure: 0.05 MPa}\n"                                                                                   \
+  "process:\n"                                                                                                         \
+  "  duration: 4 day\n"                                                                                                \
+  "  output: 1 day\n"                                                                                                  \
+  "  tolerance: 1e-7\n"                                                                                                \
+  "  inflate: false\n"                                                                                                 \
+  "  program: [{for: 0 s, F: [[1.02, 0], [0, 1.02]]}]\n"                                                               \
+  "  surroundings:\n"                                                                                                  \
+  "    - {time: 0 day, temperature: 20 degC}\n"                                                                        \
+  "    - {time: 2 day, temperature: 20 degC}\n"                                                                        \
+  "    - {time: 2 day, temperature: 30 degC}\n"                                                                        \
+  "  kinetics:\n"
 
 /* k(30 degC) / k(20 degC) of 60 kJ/mol */
 static PetscReal Speed(void)
@@ -160,10 +251,9 @@ static PetscReal Speed(void)
 
 TEST(laws_follow_their_closed_forms_over_a_step_of_temperature)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
-                          "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
-                          "activation: 60 kJ/mol}\n");
+  FOLLOWED f = FollowToEnd(CHANGES "    - {of: lamella, law: first_order, rate: 0.3 /day, activation: 60 kJ/mol}\n"
+                                   "    - {of: walls, law: fractional_conversion, rate: 0.2 /day, plateau: 1.5, "
+                                   "activation: 60 kJ/mol}\n");
   const PetscReal days = 2 + 2 * Speed();
 
   assert_near(LastState(&f)->time, 4 * 86400.0, 1e-6);
@@ -174,11 +264,10 @@ TEST(laws_follow_their_closed_forms_over_a_step_of_temperature)
 
 TEST(two_fractions_and_enzymes_follow_theirs)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
-                          "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
-                          "    - {of: walls, law: autocatalytic, rate: 0.5 /day, second_rate: 1 /day, "
-                          "enzyme: 0.02, plateau: 0.3, activation: 60 kJ/mol}\n");
+  FOLLOWED f = FollowToEnd(CHANGES "    - {of: lamella, law: two_fractions, rate: 2 /day, second_rate: 0.1 /day, "
+                                   "share: 0.6, activation: 60 kJ/mol, second_activation: 0 kJ/mol}\n"
+                                   "    - {of: walls, law: autocatalytic, rate: 0.5 /day, second_rate: 1 /day, "
+                                   "enzyme: 0.02, plateau: 0.3, activation: 60 kJ/mol}\n");
   const PetscReal days = 2 + 2 * Speed();
 
   assert_near(LastState(&f)->factor[LAM_CHANGING_LAMELLA], 0.6 * exp(-2 * days) + 0.4 * exp(-0.1 * 4), 1e-6);
@@ -191,12 +280,11 @@ TEST(two_fractions_and_enzymes_follow_theirs)
 /* Walls whose moduli are all halved bear what half of the pressure does in those of the start, half as much. */
 TEST(softened_walls_respond_as_such)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
-                               "process:\n"
-                               "  duration: 1 day\n"
-                               "  tolerance: 1e-8\n"
-                               "  kinetics: [{of: walls, law: table, time_unit: day, table: [[0, 1], [1, 0.5]]}]\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.05 MPa}\n"
+                           "process:\n"
+                           "  duration: 1 day\n"
+                           "  tolerance: 1e-8\n"
+                           "  kinetics: [{of: walls, law: table, time_unit: day, table: [[0, 1], [1, 0.5]]}]\n");
   LamMicrostructure soft = f.scene->micro;
   const LamProcessState *last = LastState(&f);
 
@@ -214,14 +302,13 @@ TEST(softened_walls_respond_as_such)
 /* Walls that lose their fibres alone are another tissue; the responder is told. */
 TEST(walls_may_change_in_their_proportions)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.05 MPa}\n"
-                               "process:\n"
-                               "  duration: 1 day\n"
-                               "  tolerance: 1e-6\n"
-                               "  kinetics:\n"
-                               "    - {of: C4, law: first_order, rate: 1 /day}\n"
-                               "    - {of: C1, law: first_order, rate: 0.2 /day}\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.05 MPa}\n"
+                           "process:\n"
+                           "  duration: 1 day\n"
+                           "  tolerance: 1e-6\n"
+                           "  kinetics:\n"
+                           "    - {of: C4, law: first_order, rate: 1 /day}\n"
+                           "    - {of: C1, law: first_order, rate: 0.2 /day}\n");
   LamMicrostructure soft = f.scene->micro;
   const LamProcessState *last = LastState(&f);
 
@@ -238,16 +325,15 @@ TEST(walls_may_change_in_their_proportions)
 
 TEST(stress_relaxes_at_constant_strain_as_water_flows)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"
-                               "process:\n"
-                               "  duration: 40 min\n"
-                               "  output: 10 s\n"
-                               "  water: {permeability: 4e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                               "  surroundings: [{time: 0 s, outside: 0.4 MPa}]\n"
-                               "  program:\n"
-                               "    - {for: 1 s, F: [[0.95, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
-                               "    - {for: 1 h}\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.1 MPa}\n"
+                           "process:\n"
+                           "  duration: 40 min\n"
+                           "  output: 10 s\n"
+                           "  water: {permeability: 4e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                           "  surroundings: [{time: 0 s, outside: 0.4 MPa}]\n"
+                           "  program:\n"
+                           "    - {for: 1 s, F: [[0.95, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
+                           "    - {for: 1 h}\n");
   const LamProcessState *pressed = &f.states[1], *last = LastState(&f);
 
   assert_near(pressed->F[0], 0.95, 1e-12);
@@ -260,14 +346,13 @@ TEST(stress_relaxes_at_constant_strain_as_water_flows)
 
 TEST(a_load_that_is_held_creeps_as_walls_soften)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
-                               "process:\n"
-                               "  duration: 2 day\n"
-                               "  output: 1 day\n"
-                               "  program:\n"
-                               "    - {for: 10 s, F: [[free, 0], [0, free]], P: [[0.01 MPa, x], [x, 0 MPa]]}\n"
-                               "  kinetics: [{of: walls, law: first_order, rate: 0.5 /day}]\n");
+  FOLLOWED f = FollowToEnd("  turgor: {pressure: 0.02 MPa}\n"
+                           "process:\n"
+                           "  duration: 2 day\n"
+                           "  output: 1 day\n"
+                           "  program:\n"
+                           "    - {for: 10 s, F: [[free, 0], [0, free]], P: [[0.01 MPa, x], [x, 0 MPa]]}\n"
+                           "  kinetics: [{of: walls, law: first_order, rate: 0.5 /day}]\n");
   const PetscReal MPa = f.scene->scales.stress * 1e-6;
 
   assert_near(LastState(&f)->response.P[0] * MPa, 0.01, 1e-6);
@@ -277,10 +362,9 @@ TEST(a_load_that_is_held_creeps_as_walls_soften)
 /* Cells without turgor take up water from where they are. */
 TEST(empty_cells_fill)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "process:\n"
-                               "  duration: 20 h\n"
-                               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.3 MPa}\n");
+  FOLLOWED f = FollowToEnd("process:\n"
+                           "  duration: 20 h\n"
+                           "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.3 MPa}\n");
 
   assert_near(f.states[0].turgor, 0, 0);
   assert_near(LastState(&f)->turgor, LastState(&f)->osmotic, 1e-5);
@@ -289,14 +373,13 @@ TEST(empty_cells_fill)
 
 TEST(a_program_that_repeats_comes_back)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "process:\n"
-                               "  duration: 40 s\n"
-                               "  output: 5 s\n"
-                               "  program:\n"
-                               "    - {for: 5 s, F: [[1, 0.1], [0, 1]]}\n"
-                               "    - {for: 5 s, F: [[1, 0], [0, 1]]}\n"
-                               "  repeat: 3\n");
+  FOLLOWED f = FollowToEnd("process:\n"
+                           "  duration: 40 s\n"
+                           "  output: 5 s\n"
+                           "  program:\n"
+                           "    - {for: 5 s, F: [[1, 0.1], [0, 1]]}\n"
+                           "    - {for: 5 s, F: [[1, 0], [0, 1]]}\n"
+                           "  repeat: 3\n");
 
   assert_int_equal(f.count, 9);
   for (PetscInt i = 0; i < f.count; i++) assert_near(f.states[i].F[1], i % 2 && i < 6 ? 0.1 : 0, 1e-12);
@@ -305,13 +388,12 @@ TEST(a_program_that_repeats_comes_back)
 /* Ten times 0.1 s is not 1 s in binary numbers. */
 TEST(ends_that_rounding_keeps_apart_are_one)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "process:\n"
-                               "  duration: 1 s\n"
-                               "  output: 0.5 s\n"
-                               "  program: [{for: 0.1 s}]\n"
-                               "  repeat: 10\n"
-                               "  kinetics: [{of: walls, law: table, time_unit: s, table: [[0, 1], [0.3, 0.9]]}]\n");
+  FOLLOWED f = FollowToEnd("process:\n"
+                           "  duration: 1 s\n"
+                           "  output: 0.5 s\n"
+                           "  program: [{for: 0.1 s}]\n"
+                           "  repeat: 10\n"
+                           "  kinetics: [{of: walls, law: table, time_unit: s, table: [[0, 1], [0.3, 0.9]]}]\n");
 
   assert_int_equal(f.count, 3);
   assert_near(LastState(&f)->time, 1, 0);
@@ -321,27 +403,26 @@ TEST(ends_that_rounding_keeps_apart_are_one)
 
 TEST(prescribed_turgor_that_jumps_below_0_is_lost)
 {
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "process:\n"
-                               "  duration: 2 h\n"
-                               "  surroundings:\n"
-                               "    - {time: 0 h, turgor: 0.02 MPa}\n"
-                               "    - {time: 1 h, turgor: 0.02 MPa}\n"
-                               "    - {time: 1 h, turgor: -0.0005 MPa}\n");
+  FOLLOWED f = FollowToEnd("process:\n"
+                           "  duration: 2 h\n"
+                           "  surroundings:\n"
+                           "    - {time: 0 h, turgor: 0.02 MPa}\n"
+                           "    - {time: 1 h, turgor: 0.02 MPa}\n"
+                           "    - {time: 1 h, turgor: -0.0005 MPa}\n");
 
   assert_non_null(FindEvent(&f, LAM_EVENT_TURGOR_LOST));
   assert_near(FindEvent(&f, LAM_EVENT_TURGOR_LOST)->time, 3600, 1e-6);
 }
 
 #define ONSET(duration)                                                                                                \
-  PROCESS_CELL "  turgor: {pressure: 0.1 MPa}\n"                                                                       \
-               "strength: {lamella_normal: 0.3 MPa}\n"                                                                 \
-               "process:\n"                                                                                            \
-               "  duration: " duration "\n"                                                                            \
-               "  tolerance: 1e-8\n"                                                                                   \
-               "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"                                    \
-               "  surroundings: [{time: 0 s, outside: 0.4 MPa}, {time: 2 day, outside: 0.45 MPa}]\n"                   \
-               "  kinetics: [{of: lamella, law: first_order, rate: 0.5 /day}]\n"
+  "  turgor: {pressure: 0.1 MPa}\n"                                                                                    \
+  "strength: {lamella_normal: 0.3 MPa}\n"                                                                              \
+  "process:\n"                                                                                                         \
+  "  duration: " duration "\n"                                                                                         \
+  "  tolerance: 1e-8\n"                                                                                                \
+  "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"                                                 \
+  "  surroundings: [{time: 0 s, outside: 0.4 MPa}, {time: 2 day, outside: 0.45 MPa}]\n"                                \
+  "  kinetics: [{of: lamella, law: first_order, rate: 0.5 /day}]\n"
 
 /* Traction over strength in the last state of a process that ends at this time, of a fresh solve. */
 static PetscReal RatioAt(PetscReal time)
@@ -350,7 +431,7 @@ static PetscReal RatioAt(PetscReal time)
 
   snprintf(duration, sizeof(duration), "%.17g s", (double)time);
   snprintf(text, sizeof(text), ONSET("%s"), duration);
-  OWNED(Followed, Forget) f = FollowToEnd(text);
+  FOLLOWED f = FollowToEnd(text);
   const LamProcessState *last = LastState(&f);
   const LamResponse fresh = SolveTissue(&f.scene->micro, last->response.load);
   const PetscReal ratio = fresh.max_traction / (last->factor[LAM_CHANGING_LAMELLA] * f.scene->strength.lamella_normal);
@@ -360,7 +441,7 @@ static PetscReal RatioAt(PetscReal time)
 
 TEST(an_event_is_where_bisection_with_fresh_solves_finds_it)
 {
-  OWNED(Followed, Forget) f = FollowToEnd(ONSET("2 day"));
+  FOLLOWED f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
   PetscReal low = 60, high = 2 * 86400.0;
 
@@ -379,7 +460,7 @@ TEST(an_event_is_where_bisection_with_fresh_solves_finds_it)
 
 TEST(stress_over_strength_is_1_at_the_event)
 {
-  OWNED(Followed, Forget) f = FollowToEnd(ONSET("2 day"));
+  FOLLOWED f = FollowToEnd(ONSET("2 day"));
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_LAMELLA_NORMAL);
 
   assert_near(event->ratio[LAM_RATIO_LAMELLA_NORMAL], 1, 1e-6);
@@ -390,13 +471,12 @@ TEST(stress_over_strength_is_1_at_the_event)
 TEST(tissue_that_snaps_goes_on_behind)
 {
   const LamStressControl control = {.given = {1, 1, 0, 0, 1}, .share = 1};
-  OWNED(Followed, Forget)
-  f = FollowToEnd(PROCESS_CELL "  interface: {law: contact, cohesion: 0.02 MPa}\n"
-                               "  turgor: {pressure: 0.05 MPa}\n"
-                               "process:\n"
-                               "  duration: 2 day\n"
-                               "  output: 1 day\n"
-                               "  kinetics: [{of: lamella, law: first_order, rate: 1 /day}]\n");
+  FOLLOWED f = FollowToEnd("  interface: {law: contact, cohesion: 0.02 MPa}\n"
+                           "  turgor: {pressure: 0.05 MPa}\n"
+                           "process:\n"
+                           "  duration: 2 day\n"
+                           "  output: 1 day\n"
+                           "  kinetics: [{of: lamella, law: first_order, rate: 1 /day}]\n");
   const LamProcessState *snap = FindEvent(&f, LAM_EVENT_SNAP), *last = LastState(&f);
   LamLoad load = last->response.load;
   LamResponse fresh;
@@ -412,11 +492,10 @@ TEST(tissue_that_snaps_goes_on_behind)
 
 TEST(walls_that_dissolve_to_nothing_end_it_with_a_reason)
 {
-  OWNED(Followed, Forget)
-  f = Follow(PROCESS_CELL "  turgor: {pressure: 0.02 MPa}\n"
-                          "process:\n"
-                          "  duration: 100 day\n"
-                          "  kinetics: [{of: walls, law: first_order, rate: 1 /day}]\n");
+  FOLLOWED f = Follow("  turgor: {pressure: 0.02 MPa}\n"
+                      "process:\n"
+                      "  duration: 100 day\n"
+                      "  kinetics: [{of: walls, law: first_order, rate: 1 /day}]\n");
 
   assert_int_equal(f.reason, LAM_PROCESS_ENDED);
   assert_true(strlen(f.message) > 20);
@@ -426,12 +505,11 @@ TEST(walls_that_dissolve_to_nothing_end_it_with_a_reason)
 /* Nothing holds turgid cells together but g: where that is gone the tissue neither spans nor resists. */
 TEST(a_lamella_that_dissolves_lets_the_cells_float)
 {
-  OWNED(Followed, Forget)
-  f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.05 MPa}\n"
-                          "  turgor: {pressure: 0.02 MPa}\n"
-                          "process:\n"
-                          "  duration: 2 day\n"
-                          "  kinetics: [{of: lamella, law: table, time_unit: day, table: [[0, 1], [1, 0]]}]\n");
+  FOLLOWED f = Follow("  interface: {law: contact, cohesion: 0.05 MPa}\n"
+                      "  turgor: {pressure: 0.02 MPa}\n"
+                      "process:\n"
+                      "  duration: 2 day\n"
+                      "  kinetics: [{of: lamella, law: table, time_unit: day, table: [[0, 1], [1, 0]]}]\n");
 
   assert_int_equal(f.reason, LAM_PROCESS_ENDED);
   assert_non_null(FindEvent(&f, LAM_EVENT_LIMIT));
@@ -440,12 +518,11 @@ TEST(a_lamella_that_dissolves_lets_the_cells_float)
 
 TEST(cells_that_are_pulled_apart_no_longer_span_the_tissue)
 {
-  OWNED(Followed, Forget)
-  f = Follow(PROCESS_CELL "  interface: {law: contact, cohesion: 0.01 MPa}\n"
-                          "  turgor: {pressure: 0.02 MPa}\n"
-                          "process:\n"
-                          "  duration: 1 min\n"
-                          "  program: [{for: 1 min, F: [[1.3, 0], [0, 1.3]]}]\n");
+  FOLLOWED f = Follow("  interface: {law: contact, cohesion: 0.01 MPa}\n"
+                      "  turgor: {pressure: 0.02 MPa}\n"
+                      "process:\n"
+                      "  duration: 1 min\n"
+                      "  program: [{for: 1 min, F: [[1.3, 0], [0, 1.3]]}]\n");
   const LamProcessState *event = FindEvent(&f, LAM_EVENT_PERCOLATION);
 
   assert_non_null(event);

@@ -3,8 +3,178 @@
   forms, balances and fresh runs.
 */
 #include "support/test.h"
-#include "support/body_fixture.h"
-#include <math.h>
+#include <lamella/lamella.h>
+#include "support/synthetic_responder.h"
+#include <stdio.h>
+#include <string.h>
+
+/* ---- a scene followed with the synthetic material ---- */
+
+enum { BODY_STATES = 4000 };
+
+/* All scenes begin with it. C1 + C2 is 0.11 MPa, the apothem 75 um; what the walls are the synthetic material does not
+ * know. */
+#define BODY_TISSUE                                                                                                    \
+  "version: 1\n"                                                                                                       \
+  "rve:\n"                                                                                                             \
+  "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"                                                               \
+  "  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}\n"                                                          \
+  "  turgor: {pressure: 0.05 MPa}\n"                                                                                   \
+  "strength: {lamella_normal: 0.1 MPa}\n"
+typedef struct {
+  LamScene *scene;
+  LamResponder material;
+  LamProcessReason reason;
+  char message[LAM_PROCESS_MESSAGE];
+  LamProcessCounts counts;
+  PetscInt count;
+  union {
+    LamBodyState *bodies; /* [BODY_STATES] */
+    LamProcessState *points;
+  };
+} Told;
+
+/* The lamella bears the mean stress of the plane. */
+static PetscErrorCode BodyRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                  LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(SyntheticRespond(ctx, n, loads, points, responses));
+  for (PetscInt i = 0; i < n; i++) responses[i].max_traction = 0.5 * (responses[i].P[0] + responses[i].P[4]);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepBody(const LamBodyState *state, void *ctx)
+{
+  Told *told = (Told *)ctx;
+
+  assert_true(told->count < BODY_STATES);
+  told->bodies[told->count++] = *state;
+  return 0;
+}
+
+static PetscErrorCode KeepPoint(const LamProcessState *state, void *ctx)
+{
+  Told *told = (Told *)ctx;
+
+  assert_true(told->count < BODY_STATES);
+  told->points[told->count++] = *state;
+  return 0;
+}
+
+/* A soft tissue whose lumens grow with the turgor. */
+static void MakeMaterial(PetscInt points, Told *told)
+{
+  Synthetic *material;
+
+  assert_int_equal(SyntheticCreate(points, &told->material, &material), 0);
+  material->phi = 0.7;
+  material->c = 0.05;
+  material->respond = BodyRespond;
+}
+
+/* Reads the scene, and changes its tolerance where one is given. */
+static void ReadScene(const char text[], PetscReal tolerance, Told *told)
+{
+  char whole[4096];
+
+  memset(told, 0, sizeof(*told));
+  snprintf(whole, sizeof(whole), BODY_TISSUE "%s", text);
+  assert_int_equal(LamSceneReadText("body.yaml", whole, &told->scene), 0);
+  if (tolerance > 0) told->scene->process.tolerance = tolerance;
+  told->bodies = (LamBodyState *)calloc(BODY_STATES, PetscMax(sizeof(LamBodyState), sizeof(LamProcessState)));
+  assert_non_null(told->bodies);
+}
+
+static void RunBody(Told *told)
+{
+  PetscInt points;
+  LamMacro macro;
+  LamBody body;
+
+  assert_int_equal(LamMacroCreate(PETSC_COMM_SELF, &macro), 0);
+  assert_int_equal(LamMacroSetScene(macro, told->scene), 0);
+  assert_int_equal(LamBodyCreate(told->scene, macro, &body), 0);
+  assert_int_equal(LamMacroSetUp(macro), 0);
+  assert_int_equal(LamMacroGetPointCount(macro, &points), 0);
+  MakeMaterial(points, told);
+  assert_int_equal(LamMacroSetResponder(macro, told->material), 0);
+  assert_int_equal(LamBodySetMonitor(body, KeepBody, told), 0);
+  assert_int_equal(LamBodyRun(body, &told->reason, told->message), 0);
+  assert_int_equal(LamBodyGetCounts(body, &told->counts), 0);
+  assert_int_equal(LamBodyDestroy(&body), 0);
+  assert_int_equal(LamMacroDestroy(&macro), 0);
+  assert_int_equal(LamResponderDestroy(&told->material), 0);
+}
+
+static Told FollowBody(const char text[], PetscReal tolerance)
+{
+  Told told;
+
+  ReadScene(text, tolerance, &told);
+  RunBody(&told);
+  return told;
+}
+
+/* The same, where it must come to its end. */
+static Told FollowBodyToEnd(const char text[], PetscReal tolerance)
+{
+  const Told told = FollowBody(text, tolerance);
+
+  if (told.reason != LAM_PROCESS_DONE) fail_msg("%s", told.message);
+  return told;
+}
+
+/* One material point of the same tissue. */
+static Told FollowPoint(const char text[], PetscReal tolerance)
+{
+  LamProcess process;
+  Told told;
+
+  ReadScene(text, tolerance, &told);
+  MakeMaterial(1, &told);
+  assert_int_equal(LamProcessCreate(told.scene, &process), 0);
+  assert_int_equal(LamProcessSetResponder(process, told.material), 0);
+  assert_int_equal(LamProcessSetMonitor(process, KeepPoint, &told), 0);
+  assert_int_equal(LamProcessRun(process, &told.reason, told.message), 0);
+  assert_int_equal(LamProcessDestroy(&process), 0);
+  assert_int_equal(LamResponderDestroy(&told.material), 0);
+  if (told.reason != LAM_PROCESS_DONE) fail_msg("%s", told.message);
+  return told;
+}
+
+static void ForgetTold(Told *told)
+{
+  assert_int_equal(LamSceneDestroy(&told->scene), 0);
+  free(told->bodies);
+}
+
+static const LamBodyState *LastBody(const Told *told)
+{
+  return &told->bodies[told->count - 1];
+}
+
+/* The first state at an event; NULL: it did not happen. */
+static const LamBodyState *FindBodyEvent(const Told *told, LamEvent event)
+{
+  for (PetscInt k = 0; k < told->count; k++)
+    if (told->bodies[k].event == event) return &told->bodies[k];
+  return NULL;
+}
+
+/* Force on the body at a named side, over C1 + C2 and the macro length. */
+static const PetscReal *BodyReaction(const LamBodyState *state, const char name[])
+{
+  const LamMacroStep *step = &state->step;
+
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    if (!strcmp(step->boundary[s], name)) return step->reaction[s];
+  fail_msg("no side %s", name);
+  return NULL;
+}
+
+/* TOLD body = FollowBody(text, 0): forgotten where the block ends. */
+#define TOLD OWNED(Told, ForgetTold)
 
 /* A square that may only stretch: uniform. `load`: on its top; `changes`: the block process without its program. */
 #define SQUARE(load)                                                                                                   \
@@ -59,8 +229,8 @@ TEST(a_free_body_is_its_material_point)
   "  kinetics:\n"                                                                                                      \
   "    - {of: lamella, law: first_order, rate: 0.1 /h, activation: 60 kJ/mol}\n"                                       \
   "    - {of: walls, law: autocatalytic, rate: 0.2 /h, second_rate: 2 /h, enzyme: 0.1, plateau: 0.6}\n"
-  OWNED(Told, ForgetTold) point = FollowPoint(BODY_TISSUE CHANGES, 1e-7);
-  OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SQUARE("") CHANGES, 1e-7);
+  TOLD point = FollowPoint(CHANGES, 1e-7);
+  TOLD body = FollowBodyToEnd(SQUARE("") CHANGES, 1e-7);
 
   AssertAlike(&body, &point, 5e-6);
 #undef CHANGES
@@ -74,15 +244,14 @@ TEST(a_free_body_is_its_material_point)
  */
 TEST(stress_that_relaxes_is_that_of_the_point)
 {
-  OWNED(Told, ForgetTold) free = FollowPoint(BODY_TISSUE RELAXATION, 1e-7);
+  TOLD free = FollowPoint(RELAXATION, 1e-7);
   const PetscReal inflated = free.points[0].response.load.F[4];
   char text[2000];
 
   snprintf(text, sizeof(text), "%s  program: [{for: 20 s, F: [[free, 0], [0, %.17g]], P: [[0 MPa, x], [x, x]]}]\n",
-           BODY_TISSUE RELAXATION, 1 + 0.1 / inflated);
-  OWNED(Told, ForgetTold) point = FollowPoint(text, 1e-7);
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 20 s, load: 1}]\n", 1e-7);
+           RELAXATION, 1 + 0.1 / inflated);
+  TOLD point = FollowPoint(text, 1e-7);
+  TOLD body = FollowBodyToEnd(STRETCHED RELAXATION "  program: [{for: 20 s, load: 1}]\n", 1e-7);
 
   AssertAlike(&body, &point, 5e-6);
   assert_near(BodyReaction(LastBody(&body), "top")[1], point.points[point.count - 1].response.P[4], 1e-6);
@@ -90,10 +259,8 @@ TEST(stress_that_relaxes_is_that_of_the_point)
 
 TEST(a_jump_of_the_load_leaves_water_no_time)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
-  OWNED(Told, ForgetTold)
-  sudden = FollowBodyToEnd(BODY_TISSUE STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 1 ms, load: 1}]\n", 1e-6);
+  TOLD body = FollowBodyToEnd(STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
+  TOLD sudden = FollowBodyToEnd(STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 1 ms, load: 1}]\n", 1e-6);
   const LamBodyState *a = LastBody(&body), *b = LastBody(&sudden);
   PetscInt k = 0;
 
@@ -106,18 +273,17 @@ TEST(a_jump_of_the_load_leaves_water_no_time)
 /* The mean change of F since the start is 0.9: what goes astray is judged from the last state, not from the start. */
 TEST(a_body_that_is_sheared_far_goes_on_over_bends)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE "macro:\n"
-                                     "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
-                                     "  boundary:\n"
-                                     "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
-                                     "    - {on: top, displacement: [9 mm, 0 mm]}\n"
-                                     "process:\n"
-                                     "  duration: 3 h\n"
-                                     "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [2.5, "
-                                     "0.8], [3, 0.7]]}]\n"
-                                     "  program: [{for: 1 h, load: 1}, {for: 1 h}, {for: 1 h, load: 0.9}]\n",
-                         1e-4);
+  TOLD body = FollowBodyToEnd("macro:\n"
+                              "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"
+                              "  boundary:\n"
+                              "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"
+                              "    - {on: top, displacement: [9 mm, 0 mm]}\n"
+                              "process:\n"
+                              "  duration: 3 h\n"
+                              "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [2.5, "
+                              "0.8], [3, 0.7]]}]\n"
+                              "  program: [{for: 1 h, load: 1}, {for: 1 h}, {for: 1 h, load: 0.9}]\n",
+                              1e-4);
 
   assert_near(LastBody(&body)->load, 0.9, 1e-12);
   assert_near(LastBody(&body)->walls, 0.7, 1e-12);
@@ -127,12 +293,11 @@ TEST(a_body_that_is_sheared_far_goes_on_over_bends)
 
 TEST(membranes_that_let_nothing_pass_keep_the_water_of_a_body)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
-                                             "  duration: 1 h\n"
-                                             "  water: {permeability: 0 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
-                                             "  program: [{for: 1 h, load: 1}]\n",
-                         1e-5);
+  TOLD body = FollowBodyToEnd(SHEARED "process:\n"
+                                      "  duration: 1 h\n"
+                                      "  water: {permeability: 0 m/s/MPa, osmotic_pressure: 0.5 MPa}\n"
+                                      "  program: [{for: 1 h, load: 1}]\n",
+                              1e-5);
 
   for (PetscInt k = 0; k < body.count; k++) assert_near(body.bodies[k].water, 1, 1e-12);
   assert_true(LastBody(&body)->turgor_max > body.bodies[0].turgor_max);
@@ -140,16 +305,15 @@ TEST(membranes_that_let_nothing_pass_keep_the_water_of_a_body)
 
 TEST(membranes_of_a_body_without_resistance_are_in_equilibrium)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE SQUARE("") "process:\n"
-                                                "  duration: 1 h\n"
-                                                "  water: {permeability: infinite, osmotic_pressure: 0.5 MPa, "
-                                                "non_osmotic: 0.1}\n"
-                                                "  surroundings:\n"
-                                                "    - {time: 0 h, outside: 0.45 MPa}\n"
-                                                "    - {time: 0.5 h, outside: 0.4 MPa}\n"
-                                                "    - {time: 0.5 h, outside: 0.44 MPa}\n",
-                         1e-6);
+  TOLD body = FollowBodyToEnd(SQUARE("") "process:\n"
+                                         "  duration: 1 h\n"
+                                         "  water: {permeability: infinite, osmotic_pressure: 0.5 MPa, "
+                                         "non_osmotic: 0.1}\n"
+                                         "  surroundings:\n"
+                                         "    - {time: 0 h, outside: 0.45 MPa}\n"
+                                         "    - {time: 0.5 h, outside: 0.4 MPa}\n"
+                                         "    - {time: 0.5 h, outside: 0.44 MPa}\n",
+                              1e-6);
   const PetscReal stress = body.scene->scales.stress, osmotic = 0.5e6 / stress;
 
   for (PetscInt k = 0; k < body.count; k++) {
@@ -162,15 +326,14 @@ TEST(membranes_of_a_body_without_resistance_are_in_equilibrium)
 /* In the end V - V_b = N / pi_out; back in the first bath the walls are met again. */
 TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE SHEARED "process:\n"
-                                             "  duration: 4 h\n" WATER "  surroundings:\n"
-                                             "    - {time: 0 h, outside: 0.45 MPa}\n"
-                                             "    - {time: 0 h, outside: 0.8 MPa}\n"
-                                             "    - {time: 2 h, outside: 0.8 MPa}\n"
-                                             "    - {time: 2 h, outside: 0.45 MPa}\n"
-                                             "  program: [{for: 10 s, load: 1}]\n",
-                         1e-5);
+  TOLD body = FollowBodyToEnd(SHEARED "process:\n"
+                                      "  duration: 4 h\n" WATER "  surroundings:\n"
+                                      "    - {time: 0 h, outside: 0.45 MPa}\n"
+                                      "    - {time: 0 h, outside: 0.8 MPa}\n"
+                                      "    - {time: 2 h, outside: 0.8 MPa}\n"
+                                      "    - {time: 2 h, outside: 0.45 MPa}\n"
+                                      "  program: [{for: 10 s, load: 1}]\n",
+                              1e-5);
   const LamBodyState *lost = FindBodyEvent(&body, LAM_EVENT_TURGOR_LOST),
                      *found = FindBodyEvent(&body, LAM_EVENT_TURGOR_FOUND);
   PetscInt k = 0;
@@ -191,17 +354,16 @@ TEST(a_plasmolysed_body_follows_boyle_and_van_t_hoff)
 /* Free of load s Psi(F, p / s) is stationary at the same F where p / s is as before. */
 TEST(turgor_that_falls_with_the_walls_leaves_the_shape)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBodyToEnd(BODY_TISSUE STRETCHED "process:\n"
-                                               "  duration: 1 h\n"
-                                               "  surroundings:\n"
-                                               "    - {time: 0 h, turgor: 0.05 MPa}\n"
-                                               "    - {time: 1 h, turgor: 0.02 MPa}\n"
-                                               "  kinetics:\n"
-                                               "    - {of: walls, law: table, time_unit: h, table: [[0, 1], [1, "
-                                               "0.4]]}\n"
-                                               "  program: [{for: 0 s, load: 1}]\n",
-                         1e-7);
+  TOLD body = FollowBodyToEnd(STRETCHED "process:\n"
+                                        "  duration: 1 h\n"
+                                        "  surroundings:\n"
+                                        "    - {time: 0 h, turgor: 0.05 MPa}\n"
+                                        "    - {time: 1 h, turgor: 0.02 MPa}\n"
+                                        "  kinetics:\n"
+                                        "    - {of: walls, law: table, time_unit: h, table: [[0, 1], [1, "
+                                        "0.4]]}\n"
+                                        "  program: [{for: 0 s, load: 1}]\n",
+                              1e-7);
   const LamBodyState *first = &body.bodies[0], *last = LastBody(&body);
 
   assert_near(last->walls, 0.4, 1e-12);
@@ -210,12 +372,11 @@ TEST(turgor_that_falls_with_the_walls_leaves_the_shape)
 
 TEST(a_body_whose_walls_dissolve_ends_with_a_reason)
 {
-  OWNED(Told, ForgetTold)
-  body = FollowBody(BODY_TISSUE SHEARED "process:\n"
-                                        "  duration: 1 h\n"
-                                        "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [0.9, "
-                                        "0], [1, 0]]}]\n",
-                    1e-5);
+  TOLD body = FollowBody(SHEARED "process:\n"
+                                 "  duration: 1 h\n"
+                                 "  kinetics: [{of: walls, law: table, time_unit: h, table: [[0, 1], [0.9, "
+                                 "0], [1, 0]]}]\n",
+                         1e-5);
 
   assert_int_equal(body.reason, LAM_PROCESS_ENDED);
   assert_true(strlen(body.message) > 20);
@@ -235,10 +396,10 @@ TEST(a_body_whose_walls_dissolve_ends_with_a_reason)
 
 TEST(errors_of_a_body_follow_the_tolerance)
 {
-  OWNED(Told, ForgetTold) exact = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-9);
+  TOLD exact = FollowBodyToEnd(SHEARED STORAGE, 1e-9);
 
   for (PetscReal tolerance = 1e-3; tolerance > 0.5e-7; tolerance /= 10) {
-    OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, tolerance);
+    TOLD body = FollowBodyToEnd(SHEARED STORAGE, tolerance);
     PetscReal error = 0;
     PetscInt i = 0;
 
@@ -259,9 +420,9 @@ TEST(errors_of_a_body_follow_the_tolerance)
 /* Largest traction over the strength at a time, by a fresh run to there. */
 static PetscReal Excess(PetscReal time)
 {
-  OWNED(Told, ForgetTold) body;
+  TOLD body;
 
-  ReadScene(BODY_TISSUE SHEARED STORAGE, 1e-8, &body);
+  ReadScene(SHEARED STORAGE, 1e-8, &body);
   body.scene->process.duration = body.scene->process.output = time;
   RunBody(&body);
   return LastBody(&body)->ratio[LAM_RATIO_LAMELLA_NORMAL] - 1;
@@ -269,7 +430,7 @@ static PetscReal Excess(PetscReal time)
 
 TEST(an_event_of_a_body_is_where_bisection_with_fresh_runs_finds_it)
 {
-  OWNED(Told, ForgetTold) body = FollowBodyToEnd(BODY_TISSUE SHEARED STORAGE, 1e-7);
+  TOLD body = FollowBodyToEnd(SHEARED STORAGE, 1e-7);
   const LamBodyState *event = FindBodyEvent(&body, LAM_EVENT_LAMELLA_NORMAL);
   PetscReal low, high;
 
