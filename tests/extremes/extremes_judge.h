@@ -1,6 +1,4 @@
-/*
-  One state of the map of extremes: solved, then held against second routes.
-*/
+/* One state of the map of extremes: solved, then held against second routes. */
 #ifndef LAM_EXTREMES_JUDGE_H
 #define LAM_EXTREMES_JUDGE_H
 

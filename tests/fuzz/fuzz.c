@@ -1,6 +1,4 @@
-/*
-  Errors, memory and files of a target.
-*/
+/* Errors, memory and files of a target. */
 #define _GNU_SOURCE /* nftw */
 #include "fuzz.h"
 #include <fcntl.h>

@@ -1,6 +1,4 @@
-/*
-  Gmsh meshes: any file becomes a mesh or is refused as the user's mistake, in words.
-*/
+/* Gmsh meshes: any file becomes a mesh or is refused as the user's mistake, in words. */
 #include "fuzz.h"
 #include "macro_impl.h"
 #include <stdlib.h>

@@ -1,6 +1,4 @@
-/*
-  Scene files: any text is read or refused as the user's mistake, in words, and leaves no memory behind.
-*/
+/* Scene files: any text is read or refused as the user's mistake, in words, and leaves no memory behind. */
 #include "fuzz.h"
 #include <lamella/scene.h>
 #include <stdlib.h>

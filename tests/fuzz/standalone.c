@@ -1,6 +1,4 @@
-/*
-  Runs a target on files: `fuzz_NAME FOLDER`, without libFuzzer. Options that libFuzzer would take are passed over.
-*/
+/* Runs a target on files: `fuzz_NAME FOLDER`, without libFuzzer. Options that libFuzzer would take are passed over. */
 #include "fuzz.h"
 #include <dirent.h>
 #include <limits.h>

@@ -1,5 +1,7 @@
 #include "macro_fixture.h"
 
+TEST_FIXTURE_NEEDS_PETSC;
+
 PetscErrorCode FixtureMonitor(LamMacro macro, const LamMacroStep *step, PetscBool *stop, void *ctx)
 {
   Fixture *fixture = (Fixture *)ctx;

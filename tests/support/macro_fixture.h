@@ -1,6 +1,4 @@
-/*
-  A body made of the synthetic material, for tests of the macroscale solver.
-*/
+/* A body made of the synthetic material, for tests of the macroscale solver. */
 #ifndef LAM_SUPPORT_MACRO_FIXTURE_H
 #define LAM_SUPPORT_MACRO_FIXTURE_H
 
@@ -23,6 +21,8 @@ typedef struct {
   char message[LAM_MESSAGE_LENGTH];
 } Fixture;
 
+/* FIXTURE fixture: made with one of the functions below, destroyed where the block ends. */
+#define FIXTURE OWNED(Fixture, FixtureDestroy)
 /* A test with a `Fixture *fixture` that it makes with one of the functions below; it is destroyed behind it. */
 #define MACRO_TEST(name) TEST_ON(name, Fixture, fixture, (void)fixture, FixtureDestroy(fixture))
 

@@ -1,5 +1,7 @@
 #include "rve_fixture.h"
 
+TEST_FIXTURE_NEEDS_PETSC;
+
 LamRVE NewRVE(const LamMicrostructure *micro)
 {
   LamRVE rve;

@@ -1,6 +1,4 @@
-/*
-  A file with a table, filled by a tissue with known answers (synthetic_responder.h).
-*/
+/* A file with a table, filled by a tissue with known answers (synthetic_responder.h). */
 #ifndef LAM_SUPPORT_TABLE_FIXTURE_H
 #define LAM_SUPPORT_TABLE_FIXTURE_H
 

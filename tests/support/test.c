@@ -5,6 +5,7 @@
 
 static TestEntry *First, **Last = &First;
 
+int TestFixtureNeedsPetsc;
 __attribute__((weak)) const TestGroup TestProgram = {0};
 
 void TestRegister(TestEntry *entry)
@@ -31,10 +32,11 @@ static int RunAll(const char name[])
 
 int main(int argc, char **argv)
 {
+  const int petsc = TestProgram.petsc || TestFixtureNeedsPetsc;
   int failed;
 
-  if (TestProgram.petsc && PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (petsc && PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   failed = RunAll(argv[0]);
-  if (TestProgram.petsc && PetscFinalize()) return 1;
+  if (petsc && PetscFinalize()) return 1;
   return failed;
 }

@@ -7,6 +7,7 @@
     TEST_ON(name, type, object, enter, leave) { ... }     on a `type *object` that one statement makes and one unmakes
     TEST_WITH(name, enter, leave) { ... }                 its own set-up and tear-down, or NULL
     TEST_GROUP(.petsc = 1, .setup = s, .teardown = t);    once, where the program needs PETSc or has a set-up of all
+    TEST_FIXTURE_NEEDS_PETSC;                             in a fixture: programs that use it need PETSc
 */
 #ifndef LAM_SUPPORT_TEST_H
 #define LAM_SUPPORT_TEST_H
@@ -30,6 +31,7 @@ typedef struct {
 
 void TestRegister(TestEntry *entry);
 extern const TestGroup TestProgram;
+extern int TestFixtureNeedsPetsc;
 
 #define TEST_WITH(name, enter, leave)                                                                                  \
   static void name(void **state);                                                                                      \
@@ -59,6 +61,12 @@ extern const TestGroup TestProgram;
   }                                                                                                                    \
   static void name##_on(type *object)
 #define TEST_GROUP(...) const TestGroup TestProgram = {__VA_ARGS__}
+#define TEST_FIXTURE_NEEDS_PETSC                                                                                       \
+  static __attribute__((constructor)) void NeedPetsc(void)                                                             \
+  {                                                                                                                    \
+    TestFixtureNeedsPetsc = 1;                                                                                         \
+  }                                                                                                                    \
+  extern int TestFixtureNeedsPetsc /* takes the semicolon */
 
 /* OWNED(Table, TableClose) t = ...: `TableClose(&t)` where the block ends. */
 #define OWNED(type, leave) type __attribute__((cleanup(leave)))

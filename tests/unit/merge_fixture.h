@@ -1,6 +1,4 @@
-/*
-  Databases to merge: shard_path[i], with nodes of one grid whose numbers are made up; the result is `path`.
-*/
+/* Databases to merge: shard_path[i], with nodes of one grid whose numbers are made up; the result is `path`. */
 #ifndef LAM_MERGE_FIXTURE_H
 #define LAM_MERGE_FIXTURE_H
 

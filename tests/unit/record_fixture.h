@@ -1,6 +1,4 @@
-/*
-  A folder of its own for each test of record files, and files to put into it.
-*/
+/* A folder of its own for each test of record files, and files to put into it. */
 #ifndef LAM_RECORD_FIXTURE_H
 #define LAM_RECORD_FIXTURE_H
 

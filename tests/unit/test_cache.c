@@ -1,6 +1,4 @@
-/*
-  Claims about answers from a database with a solver behind it. Runs on any number of ranks.
-*/
+/* Claims about answers from a database with a solver behind it. Runs on any number of ranks. */
 #include "support/test.h"
 #include <lamella/cache.h>
 #include "support/synthetic_responder.h"

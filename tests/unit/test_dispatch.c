@@ -1,6 +1,4 @@
-/*
-  Tasks that rank 0 hands out: on one rank, and on several by tests/mpi/dispatch.sh.
-*/
+/* Tasks that rank 0 hands out: on one rank, and on several by tests/mpi/dispatch.sh. */
 #include <signal.h>
 #include <string.h>
 #include <time.h>

@@ -82,10 +82,8 @@ TEST(tags_that_are_far_apart_are_refused)
   AssertRefused(FORMAT_41 "$Nodes\n1 1 2817 4\n2 1 0 1\n1\n0 0 0\n$EndNodes\n", "said to be from 2817 to 4");
 }
 
-TEST(an_element_with_a_node_twice_is_refused)
-{
-  AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 3 2 5 5 1 2 3 3\n$EndElements\n", "has node 3 twice");
-}
+TEST_IS(an_element_with_a_node_twice_is_refused,
+        AssertRefused(FORMAT_22 NODES_22 "$Elements\n1\n1 3 2 5 5 1 2 3 3\n$EndElements\n", "has node 3 twice"));
 
 TEST(a_line_that_is_on_no_element_is_refused)
 {
@@ -127,10 +125,8 @@ TEST(long_words_are_refused)
   free(text);
 }
 
-TEST(a_place_that_is_no_number_is_refused)
-{
-  AssertRefused(FORMAT_22 "$Nodes\n1\n1 nan 0 0\n$EndNodes\n", "line 6: a coordinate is no finite number");
-}
+TEST_IS(a_place_that_is_no_number_is_refused,
+        AssertRefused(FORMAT_22 "$Nodes\n1\n1 nan 0 0\n$EndNodes\n", "line 6: a coordinate is no finite number"));
 
 TEST(a_file_cut_anywhere_is_refused)
 {

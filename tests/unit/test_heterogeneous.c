@@ -1,6 +1,4 @@
-/*
-  Claims about bodies of different tissue: turned, scaled and blended answers are those of one potential.
-*/
+/* Claims about bodies of different tissue: turned, scaled and blended answers are those of one potential. */
 #include "support/test.h"
 #include <lamella/heterogeneous.h>
 #include "support/random_reals.h"

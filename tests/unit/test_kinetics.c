@@ -1,6 +1,4 @@
-/*
-  Kinetic laws: rates at a temperature, and their derivatives.
-*/
+/* Kinetic laws: rates at a temperature, and their derivatives. */
 #include "support/test.h"
 #include <lamella/kinetics.h>
 #include <math.h>

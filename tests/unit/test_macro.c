@@ -1,6 +1,4 @@
-/*
-  Claims about the macroscale solver, with a material of known answers. Runs on any number of ranks.
-*/
+/* Claims about the macroscale solver, with a material of known answers. Runs on any number of ranks. */
 #include "support/test.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"
@@ -96,7 +94,7 @@ MACRO_TEST(ReactionsBalance)
 /* A step that the material cannot follow is cut, and the end is the same as without that limit. */
 TEST(CutbackReachesTheSameEnd)
 {
-  Fixture cut, whole;
+  FIXTURE cut, whole;
 
   FixtureShear(&cut, 2, 0.4, 1);
   FixtureSetUp(&cut, PETSC_COMM_WORLD);
@@ -109,8 +107,6 @@ TEST(CutbackReachesTheSameEnd)
   assert_int_equal(FixtureLast(&whole)->cutbacks, 0);
   assert_true(cut.material->rejects >= FixtureLast(&cut)->cutbacks); /* predictions that fail are rejected, too */
   assert_true(PetscAbsReal(FixtureLast(&cut)->reaction[1][0] - FixtureLast(&whole)->reaction[1][0]) < 1e-9);
-  FixtureDestroy(&cut);
-  FixtureDestroy(&whole);
 }
 
 /* An increment that would change a point's deformation by more than 0.75 is cut before the material is asked. */
@@ -274,7 +270,7 @@ MACRO_TEST(MonitorStopsTheRun)
 /* Reactions, work and fields are those of one rank. */
 TEST(RanksDoNotMatter)
 {
-  Fixture one, all;
+  FIXTURE one, all;
   LamMacroFields fields_one, fields_all;
 
   FixtureShear(&one, 4, 0.3, 2);
@@ -296,8 +292,6 @@ TEST(RanksDoNotMatter)
   }
   CHECK(LamMacroFieldsDestroy(&fields_one));
   CHECK(LamMacroFieldsDestroy(&fields_all));
-  FixtureDestroy(&one);
-  FixtureDestroy(&all);
 }
 
 /* Elements are listed as VTK wants them: corners counter-clockwise, mid-edges, centre. */
@@ -336,5 +330,3 @@ MACRO_TEST(LooseBodyIsRefused)
   FixtureBoundary(fixture, "top", NAN, 0.1);
   FixtureRefused(fixture);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -1,6 +1,4 @@
-/*
-  A macroscale run that goes on from an archive of an earlier one; archives themselves.
-*/
+/* A macroscale run that goes on from an archive of an earlier one; archives themselves. */
 #include "support/test.h"
 #include "support/macro_fixture.h"
 #include <stdio.h>
@@ -135,7 +133,7 @@ static void Prepare(Fixture *fixture, PetscBool inflate, PetscBool sealed, Petsc
 /* A run that is stopped after a step, and one that goes on from there, are one that is not stopped, bit for bit. */
 static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after)
 {
-  Fixture whole, first, second;
+  FIXTURE whole, first, second;
   LamArchive archive;
 
   Prepare(&whole, inflate, sealed, -1);
@@ -156,9 +154,6 @@ static void CheckGoesOn(PetscBool inflate, PetscBool sealed, PetscInt stop_after
     assert_memory_equal(&a->work, &b->work, sizeof(a->work));
   }
   unlink(Path);
-  FixtureDestroy(&whole);
-  FixtureDestroy(&first);
-  FixtureDestroy(&second);
 }
 
 TEST_IS(GoesOnBehindAStep, CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2));
@@ -179,5 +174,3 @@ TEST(GoesOnWithLoads)
   CheckGoesOn(PETSC_FALSE, PETSC_FALSE, 2);
   AllLoads = PETSC_FALSE;
 }
-
-TEST_GROUP(.petsc = 1);

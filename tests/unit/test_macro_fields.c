@@ -73,5 +73,3 @@ TEST(UnloadingIsOfTheLeastPressedFaces)
   LamMacroKeepFields(&response, field);
   assert_true(isnan(field[LAM_POINT_UNLOADING]));
 }
-
-TEST_GROUP(.petsc = 1);

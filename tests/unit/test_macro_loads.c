@@ -1,6 +1,4 @@
-/*
-  Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks.
-*/
+/* Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks. */
 #include "support/test.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"
@@ -240,7 +238,7 @@ TEST(DiscUnderAPlateIsSymmetric)
   PetscReal force[2];
 
   for (int mirrored = 0; mirrored < 2; mirrored++) {
-    Fixture fixture;
+    FIXTURE fixture;
     LamBoundary *plate;
     FixtureQuarterDisc(&fixture, 3, 4);
     plate = FixtureAdd(&fixture, "rim", LAM_BOUNDARY_PLATE);
@@ -254,7 +252,6 @@ TEST(DiscUnderAPlateIsSymmetric)
                   PetscAbsReal(fixture.steps[k - 1].reaction[2][1 - mirrored]));
     const char *held = mirrored ? "left" : "bottom";
     assert_true(PetscAbsReal(FixtureReaction(&fixture, held)[1 - mirrored] + force[mirrored]) < 1e-8);
-    FixtureDestroy(&fixture);
   }
   assert_true(force[0] < -0.1);
   assert_true(PetscAbsReal(force[0] - force[1]) < 1e-8);
@@ -326,7 +323,7 @@ TEST(HistoriesGoOneAfterTheOther)
   PetscReal force[2][2];
 
   for (int history = 0; history < 2; history++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 2, 0.2, 4);
     fixture.scene.macro.boundary_count = 1;
     FixtureBoundary(&fixture, "top", 0.2, NAN);
@@ -339,7 +336,6 @@ TEST(HistoriesGoOneAfterTheOther)
     FixtureRun(&fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
     if (history) assert_true(PetscAbsReal(fixture.steps[1].reaction[1][0]) < 1e-9); /* not sheared yet */
     for (int i = 0; i < 2; i++) force[history][i] = FixtureReaction(&fixture, "top")[i];
-    FixtureDestroy(&fixture);
   }
   for (int i = 0; i < 2; i++) assert_true(PetscAbsReal(force[0][i] - force[1][i]) < 1e-8);
 }
@@ -373,13 +369,12 @@ TEST(PredictionsSaveIterations)
   PetscReal force[2];
 
   for (int predict = 0; predict < 2; predict++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 3, 0.5, 20);
     FixtureSetUp(&fixture, PETSC_COMM_WORLD);
     fixture.macro->extrapolates = predict ? PETSC_TRUE : PETSC_FALSE;
     iterations[predict] = Iterations(&fixture);
     force[predict] = FixtureReaction(&fixture, "top")[0];
-    FixtureDestroy(&fixture);
   }
   assert_true(PetscAbsReal(force[0] - force[1]) < 1e-9);
   assert_true(iterations[1] < 0.8 * iterations[0]);
@@ -419,5 +414,3 @@ MACRO_TEST(ObstaclesDoNotHold)
   Set(FixtureAdd(fixture, "bottom", LAM_BOUNDARY_PLATE)->displacement, 0, 0);
   FixtureRefused(fixture);
 }
-
-TEST_GROUP(.petsc = 1);

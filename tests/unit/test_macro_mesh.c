@@ -1,6 +1,4 @@
-/*
-  Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box.
-*/
+/* Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box. */
 #include "support/test.h"
 #include "support/gmsh_writer.h"
 #include "support/macro_fixture.h"
@@ -29,14 +27,13 @@ static PetscReal DiscError(LamDiscPart part, PetscInt along)
 {
   static const PetscReal share[] = {1, 0.5, 0.25};
   PetscReal error;
-  Fixture fixture;
+  FIXTURE fixture;
 
   FixtureScene(&fixture, 1, 1, 1, 1);
   FixtureDisc(&fixture, part, along, along);
   FixtureBoundary(&fixture, "rim", 0, 0);
   FixtureSetUp(&fixture, PETSC_COMM_WORLD);
   error = PetscAbsReal(Area(fixture.macro) - PETSC_PI * share[part]);
-  FixtureDestroy(&fixture);
   return error;
 }
 
@@ -116,7 +113,7 @@ TEST(ObliqueSymmetryIsUprightTurned)
 
   GmshWrite(path, 3, 3, GMSH_QUADRILATERALS, Turned);
   for (int turned = 0; turned < 2; turned++) {
-    Fixture fixture;
+    FIXTURE fixture;
     OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
     FixtureScene(&fixture, 3, 3, 1, 2);
     if (turned) UseGmsh(&fixture, path);
@@ -131,7 +128,6 @@ TEST(ObliqueSymmetryIsUprightTurned)
     for (int ij = 0; ij < 4; ij++) P[turned][ij] = fields.P[3 * (ij / 2) + ij % 2];
     const PetscReal *left = FixtureReaction(&fixture, "left");
     force[turned] = PetscSqrtReal(left[0] * left[0] + left[1] * left[1]);
-    FixtureDestroy(&fixture);
   }
   remove(path);
   const PetscReal c = cos(ANGLE), s = sin(ANGLE), Q[4] = {c, -s, s, c};
@@ -154,5 +150,3 @@ MACRO_TEST(LooseDiscIsRefused)
   FixtureBoundary(fixture, "rim", 0, NAN);
   FixtureRefused(fixture);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -1,6 +1,4 @@
-/*
-  Numbers that vary with the position: expressions, tables, and what is wrong with them.
-*/
+/* Numbers that vary with the position: expressions, tables, and what is wrong with them. */
 #include "support/test.h"
 #include <lamella/place_field.h>
 #include <stdio.h>

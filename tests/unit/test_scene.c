@@ -1,6 +1,4 @@
-/*
-  What a scene becomes: nondimensional data, defaults, ramps.
-*/
+/* What a scene becomes: nondimensional data, defaults, ramps. */
 #include "support/test.h"
 #include "unit/test_scene.h"
 #include <math.h>

@@ -1,6 +1,4 @@
-/*
-  For tests of scene reading: the usual tissue as text, and scenes of texts.
-*/
+/* For tests of scene reading: the usual tissue as text, and scenes of texts. */
 #ifndef LAM_TEST_SCENE_H
 #define LAM_TEST_SCENE_H
 

@@ -1,6 +1,4 @@
-/*
-  Patches and cells that differ, as a scene becomes them. tests/scenes/bad.txt has what is refused.
-*/
+/* Patches and cells that differ, as a scene becomes them. tests/scenes/bad.txt has what is refused. */
 #include "support/test.h"
 #include "unit/test_scene.h"
 

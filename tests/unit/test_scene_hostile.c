@@ -1,6 +1,4 @@
-/*
-  Files that are no scenes, by accident or on purpose: each is refused with a message, none crashes the reader.
-*/
+/* Files that are no scenes, by accident or on purpose: each is refused with a message, none crashes the reader. */
 #include "support/test.h"
 #include "test_scene.h"
 #include "test_scene_message.h"
@@ -54,25 +52,15 @@ static void AssertRefusedRepeat(const char start[], const char part[], size_t ti
   free(text);
 }
 
-TEST(a_missing_file_is_named)
-{
-  AssertRefusedFile("no/such/scene.yaml", "no/such/scene.yaml: the scene cannot be opened: No such file");
-}
+TEST_IS(a_missing_file_is_named,
+        AssertRefusedFile("no/such/scene.yaml", "no/such/scene.yaml: the scene cannot be opened: No such file"));
 
-TEST(a_directory_is_refused)
-{
-  AssertRefusedFile(LAMELLA_SOURCE_DIR "/tests", "Is a directory");
-}
+TEST_IS(a_directory_is_refused, AssertRefusedFile(LAMELLA_SOURCE_DIR "/tests", "Is a directory"));
 
-TEST(an_endless_file_is_refused)
-{
-  AssertRefusedFile("/dev/zero", "larger than 1024 kB");
-}
+TEST_IS(an_endless_file_is_refused, AssertRefusedFile("/dev/zero", "larger than 1024 kB"));
 
-TEST(a_text_beyond_1_MB_is_refused)
-{
-  AssertRefusedRepeat("", "# comment\n", 110000, "version: 1\n", "larger than 1024 kB");
-}
+TEST_IS(a_text_beyond_1_MB_is_refused,
+        AssertRefusedRepeat("", "# comment\n", 110000, "version: 1\n", "larger than 1024 kB"));
 
 TEST(a_file_with_null_bytes_is_refused)
 {
@@ -103,10 +91,7 @@ TEST(invalid_UTF8_is_refused)
 }
 
 /* libfyaml never returned. */
-TEST(a_directive_that_is_no_UTF8_is_refused)
-{
-  AssertRefusedText("%a\xd0\n", "scene.yaml:1:3: byte 0xd0 is no UTF-8");
-}
+TEST_IS(a_directive_that_is_no_UTF8_is_refused, AssertRefusedText("%a\xd0\n", "scene.yaml:1:3: byte 0xd0 is no UTF-8"));
 
 TEST(deep_nesting_is_refused)
 {
@@ -175,10 +160,8 @@ TEST(a_long_name_is_shortened)
   assert_non_null(strstr(scene_message, "directory/scene.yaml:1:10: version: 2: is out of range; write 1"));
 }
 
-TEST(percent_signs_are_shown_as_they_are)
-{
-  AssertRefusedText("version: 100%s%n\n", "version: 100%s%n: is not a plain number");
-}
+TEST_IS(percent_signs_are_shown_as_they_are,
+        AssertRefusedText("version: 100%s%n\n", "version: 100%s%n: is not a plain number"));
 
 static char *ReadScene(void)
 {

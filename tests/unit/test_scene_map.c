@@ -1,6 +1,4 @@
-/*
-  The axes of a map: what a scene's block becomes.
-*/
+/* The axes of a map: what a scene's block becomes. */
 #include "support/test.h"
 #include "unit/test_scene.h"
 #include <math.h>

@@ -1,6 +1,4 @@
-/*
-  For tests of scene reading: runs a call that should fail and keeps its message instead of printing it.
-*/
+/* For tests of scene reading: runs a call that should fail and keeps its message instead of printing it. */
 #ifndef LAM_TEST_SCENE_MESSAGE_H
 #define LAM_TEST_SCENE_MESSAGE_H
 

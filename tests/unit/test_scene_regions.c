@@ -1,6 +1,4 @@
-/*
-  What the regions and fields of a scene become.
-*/
+/* What the regions and fields of a scene become. */
 #include "support/test.h"
 #include "unit/test_scene.h"
 #include "unit/test_scene_message.h"

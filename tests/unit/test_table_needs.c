@@ -167,15 +167,11 @@ static void AssertRefusedWith(LamStatus status, PetscBool stable, PetscInt branc
   assert_int_equal(r.status, LAM_CONVERGED);
 }
 
-TEST(a_cell_with_an_unstable_corner_is_refused_its_children_are_not)
-{
-  AssertRefusedWith(LAM_UNSTABLE, PETSC_FALSE, 0);
-}
+TEST_IS(a_cell_with_an_unstable_corner_is_refused_its_children_are_not,
+        AssertRefusedWith(LAM_UNSTABLE, PETSC_FALSE, 0));
 
-TEST(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not)
-{
-  AssertRefusedWith(LAM_CONVERGED, PETSC_TRUE, 1);
-}
+TEST_IS(a_cell_with_a_corner_on_another_branch_is_refused_its_children_are_not,
+        AssertRefusedWith(LAM_CONVERGED, PETSC_TRUE, 1));
 
 TABLE_TEST(a_root_cell_with_a_failed_corner_cannot_be_helped, AnalyticTableOpen(PETSC_FALSE, 0.2))
 {

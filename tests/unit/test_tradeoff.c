@@ -1,6 +1,4 @@
-/*
-  lamella tradeoff: spread of times, which settings are the best, errors, and which settings a scene has.
-*/
+/* lamella tradeoff: spread of times, which settings are the best, errors, and which settings a scene has. */
 #include "support/test.h"
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,4 @@
-/*
-  Quantities with units.
-*/
+/* Quantities with units. */
 #include "support/test.h"
 #include "test_scene_message.h"
 #include <math.h>
@@ -134,7 +132,4 @@ TEST(hexadecimal_numbers_are_refused)
   AssertRefused("0x10", LAM_DIMENSION_STRESS, "unknown");
 }
 
-TEST(the_message_shows_the_text)
-{
-  AssertRefused("7 furlongs%n%s", LAM_DIMENSION_STRESS, "7 furlongs%n%s: ");
-}
+TEST_IS(the_message_shows_the_text, AssertRefused("7 furlongs%n%s", LAM_DIMENSION_STRESS, "7 furlongs%n%s: "));

@@ -146,5 +146,3 @@ TEST(EnergyFallsAlongTheModeOfAnUnstableState)
   free(mode);
   free(y);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -128,5 +128,3 @@ TEST(ApartCellsAreClustersOfTheirOwn)
   assert_int_equal(r.percolating_directions, 0);
   assert_near(r.fabric[0] + r.fabric[1], 0.0, 1e-12);
 }
-
-TEST_GROUP(.petsc = 1);

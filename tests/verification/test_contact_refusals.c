@@ -106,5 +106,3 @@ TEST(FailureLeavesTheState)
   assert_int_equal(after.newton_iterations, fresh.newton_iterations);
   for (int i = 0; i < 9; i++) assert_near(after.P[i], fresh.P[i], 1e-12);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -157,5 +157,3 @@ TEST(EverythingElseIsANumber)
       for (int j = 0; j < 5; j++) assert_true(isfinite(r.tangent[9 * contact_components[i] + contact_components[j]]));
   }
 }
-
-TEST_GROUP(.petsc = 1);

@@ -123,5 +123,3 @@ TEST(TooManyChangesAreRefused)
   assert_false(ok);
   Destroy(&s);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -179,5 +179,3 @@ TEST(a_sealed_body_has_the_force_of_direct_solves)
 
   assert_near(answered.reaction[1][0] / solved.reaction[1][0], 1, 0.02);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -202,5 +202,3 @@ TEST(PrescribedStressDerivesInAnyCase)
   assert_memory_equal(responses[0].load.F, responses[1].load.F, sizeof(responses[0].load.F));
   assert_memory_equal(responses[0].P, responses[1].P, sizeof(responses[0].P));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -118,5 +118,3 @@ TEST(ChangesNothingOfTheState)
   assert_int_equal(alone.factorisations, both.factorisations); /* the estimate's are not the state's */
   assert_memory_equal(alone.P, both.P, sizeof(alone.P));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -101,5 +101,3 @@ TEST(FailureLeavesTheStateAsItWas)
   assert_int_equal(LamRVESolve(rve, &first, point, &after), 0);
   assert_int_equal(after.newton_iterations, 0);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -64,5 +64,3 @@ TEST(StressIsThatOfOneRVE)
   for (PetscInt k = 0; k < 9 * fields.element_count; ++k) assert_true(fabs(fields.P[k] - exact.P[k % 9]) < 1e-8);
   TearDown(&body);
 }
-
-TEST_GROUP(.petsc = 1);

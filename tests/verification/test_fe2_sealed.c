@@ -123,5 +123,3 @@ TEST(CookHasTheOrderOfTheElement)
     assert_true(OrderOf(force) > 2);
   }
 }
-
-TEST_GROUP(.petsc = 1);

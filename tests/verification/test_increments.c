@@ -61,5 +61,3 @@ TEST(LargeStepsEndWhereSmallOnesDo)
       assert_int_equal(l.once.status, l.small.status);
   }
 }
-
-TEST_GROUP(.petsc = 1);

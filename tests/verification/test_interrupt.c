@@ -176,5 +176,3 @@ TEST(StopsMixedSearch)
   StopMixed(&bonded, (MixedCase){.F = {FREE, FREE, 0, FREE}, .F33 = 1, .P = {-0.02, 0, 0, -0.02}});
   StopMixed(&contact, (MixedCase){.turgor = 0.02, .F = {FREE, 0.1, 0, FREE}, .F33 = 1});
 }
-
-TEST_GROUP(.petsc = 1);

@@ -160,5 +160,3 @@ TEST(PathToTheLoad)
   for (int k = 0; k < 2; k++) assert_int_equal(LamRVESolve(rve, &way[k], point, &b), 0);
   AssertTurnedResponse(&a, &b, turned_identity, turned_identity, TOLERANCE);
 }
-
-TEST_GROUP(.petsc = 1);

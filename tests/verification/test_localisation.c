@@ -103,5 +103,3 @@ TEST(ShearedWallsKinkUnlessTheirFibresGoSlack)
   micro.wall.fibres = LAM_FIBRES_TENSION;
   assert_near(SolveTissue(&micro, PlaneLoad(1, 0.5, 0, 1, 0)).kinked_fraction, 0, 0);
 }
-
-TEST_GROUP(.petsc = 1);

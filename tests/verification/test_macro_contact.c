@@ -83,5 +83,3 @@ MACRO_TEST(ComplementarityHolds)
   CHECK(VecRestoreArrayRead(macro->u, &u));
   CHECK(VecRestoreArrayRead(macro->force_accepted, &force));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -1,6 +1,4 @@
-/*
-  The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy.
-*/
+/* The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy. */
 #include "support/test.h"
 #include "support/macro_fixture.h"
 
@@ -33,7 +31,7 @@ MACRO_TEST(HomogeneousDeformationIsExact)
 static PetscReal WorkError(PetscInt steps)
 {
   const LamLoad load = {{1.3, 0, 0, 0, 1.1, 0, 0, 0, 1}, 0, 0};
-  Fixture fixture;
+  FIXTURE fixture;
   LamResponse exact;
   PetscReal work;
 
@@ -42,7 +40,6 @@ static PetscReal WorkError(PetscInt steps)
   CHECK(LamResponseInit(&load, &exact));
   SyntheticEvaluate(fixture.material, &load, &exact);
   work = FixtureLast(&fixture)->work;
-  FixtureDestroy(&fixture);
   return PetscAbsReal(work - 0.6 * exact.energy);
 }
 
@@ -61,15 +58,12 @@ TEST(ShearConverges)
   PetscReal force[3];
 
   for (int k = 0; k < 3; k++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 2 << k, 0.2, 1);
     FixtureRun(&fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
     force[k] = FixtureLast(&fixture)->reaction[1][0];
-    FixtureDestroy(&fixture);
   }
   assert_true(force[0] > force[1] && force[1] > force[2]); /* stiffer on coarse meshes */
   assert_true((force[1] - force[2]) < 0.6 * (force[0] - force[1]));
   assert_true((force[1] - force[2]) < 0.01 * force[2]);
 }
-
-TEST_GROUP(.petsc = 1);

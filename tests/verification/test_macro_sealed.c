@@ -29,6 +29,12 @@ static void Solve(Fixture *fixture)
   if (fixture->reason != LAM_MACRO_DONE) fail_msg("%s", fixture->message);
 }
 
+static void Run(Fixture *fixture)
+{
+  SetUp(fixture);
+  Solve(fixture);
+}
+
 /* The turgor of the material at J of the reference where it was sealed, with p0: (phi + c p) J = v (1 - (p - p0) / K).
  */
 static PetscReal SealedTurgor(const Fixture *fixture, PetscReal p0, PetscReal J)
@@ -43,14 +49,13 @@ static PetscReal SealedTurgor(const Fixture *fixture, PetscReal p0, PetscReal J)
 TEST(PatchTest)
 {
   for (int k = 0; k < 2; k++) {
-    Fixture fixture;
+    FIXTURE fixture;
     OWNED(LamMacroFields, LamMacroFieldsDestroy) fields;
     FixtureScene(&fixture, 1, 1, 1, 1);
     FixtureRollers(&fixture, 0.1, -0.06);
     FixtureSeal(&fixture, 0.2, 2000);
     UseMesh(&fixture, 4, element_kinds[k], GmshDistorted);
-    SetUp(&fixture);
-    Solve(&fixture);
+    Run(&fixture);
     const PetscReal turgor = SealedTurgor(&fixture, 0.2, 1.1 * 0.94), F[9] = {1.1, 0, 0, 0, 0.94, 0, 0, 0, 1};
     assert_true(PetscAbsReal(turgor - 0.2) > 0.1);
     CHECK(LamMacroGetFields(fixture.macro, &fields));
@@ -58,7 +63,6 @@ TEST(PatchTest)
       for (int i = 0; i < 9; i++) assert_true(PetscAbsReal(fields.F[9 * e + i] - F[i]) < 1e-10);
       assert_true(PetscAbsReal(fields.mean[LAM_POINT_FIELD_COUNT * e + LAM_POINT_TURGOR] - turgor) < 1e-10);
     }
-    FixtureDestroy(&fixture);
   }
 }
 
@@ -97,7 +101,7 @@ TEST(AffineFieldIsInBalance)
   const PetscReal H[4] = {0.05, 0.2, -0.1, -0.08};
 
   for (int k = 0; k < 2; k++) {
-    Fixture fixture;
+    FIXTURE fixture;
     PetscReal scale;
     PetscBool ok;
     const PetscScalar *force;
@@ -118,7 +122,6 @@ TEST(AffineFieldIsInBalance)
       for (PetscInt i = 0; i < 2; i++) assert_true(PetscAbsReal(force[local + i]) < 1e-12 * scale);
     }
     CHECK(VecRestoreArrayRead(macro->force, &force));
-    FixtureDestroy(&fixture);
   }
 }
 
@@ -126,7 +129,7 @@ TEST(AffineFieldIsInBalance)
 static PetscReal TangentError(GmshElements elements, PetscInt seed)
 {
   const PetscReal h = 1e-5;
-  Fixture fixture;
+  FIXTURE fixture;
   PetscRandom random;
   PetscReal error, norm, scale;
   PetscBool ok;
@@ -159,7 +162,6 @@ static PetscReal TangentError(GmshElements elements, PetscInt seed)
   CHECK(VecNorm(product, NORM_2, &norm));
   CHECK(PetscRandomDestroy(&random));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(vectors); k++) CHECK(VecDestroy(vectors[k]));
-  FixtureDestroy(&fixture);
   return error / norm;
 }
 
@@ -175,18 +177,16 @@ TEST(NewtonIsQuadratic)
   const PetscReal moduli[] = {1, 1e3, 1e6};
 
   for (size_t m = 0; m < PETSC_STATIC_ARRAY_LENGTH(moduli); m++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 3, 0.3, 1);
     FixtureSeal(&fixture, 0.2, moduli[m]);
     fixture.scene.macro.inflate = PETSC_TRUE;
-    SetUp(&fixture);
-    Solve(&fixture);
+    Run(&fixture);
     const LamMacroStep *step = FixtureLast(&fixture);
     assert_int_equal(step->cutbacks, 0);
     assert_in_range(step->newton_iterations, 3, 6);
     for (PetscInt k = 1; k + 1 < step->residual_count; k++)
       assert_true(step->residuals[k + 1] < 10 * PetscSqr(step->residuals[k]) + 1e-13);
-    FixtureDestroy(&fixture);
   }
 }
 
@@ -196,18 +196,16 @@ TEST(LumenFollowsWater)
   const PetscReal moduli[] = {2, 2e4};
 
   for (size_t m = 0; m < PETSC_STATIC_ARRAY_LENGTH(moduli); m++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureBiaxial(&fixture, -0.05, 0.03, 2);
     FixtureSeal(&fixture, 0.2, moduli[m]);
-    SetUp(&fixture);
-    Solve(&fixture);
+    Run(&fixture);
     const PetscReal p = SealedTurgor(&fixture, 0.2, 0.95 * 1.03), v = fixture.material->phi + 0.2 * fixture.material->c;
     assert_true(PetscAbsReal(FixtureLast(&fixture)->turgor_mean - p) < 1e-10);
     for (PetscInt q = 0; q < fixture.macro->point_count; q++) {
       const PetscReal lumen = fixture.macro->accepted[q].field[LAM_POINT_LUMEN];
       assert_true(PetscAbsReal(lumen - v * (1 - (p - 0.2) / moduli[m])) < 1e-11);
     }
-    FixtureDestroy(&fixture);
   }
 }
 
@@ -217,16 +215,14 @@ TEST(SoftWaterIsPrescribedTurgor)
   PetscReal reaction[2];
 
   for (int sealed = 0; sealed < 2; sealed++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 3, 0.2, 1);
     FixtureSeal(&fixture, 0.2, 1e-9);
     fixture.scene.sealed = (PetscBool)sealed;
     fixture.scene.macro.inflate = PETSC_TRUE;
-    SetUp(&fixture);
-    Solve(&fixture);
+    Run(&fixture);
     assert_true(!fixture.macro->seal == !sealed);
     reaction[sealed] = FixtureLast(&fixture)->reaction[1][0];
-    FixtureDestroy(&fixture);
   }
   assert_true(PetscAbsReal(reaction[1] - reaction[0]) < 1e-8 * reaction[0]);
 }
@@ -253,7 +249,7 @@ TEST(CutbackReachesTheSameEnd)
   PetscReal reaction[2], turgor[2];
 
   for (int limited = 0; limited < 2; limited++) {
-    Fixture fixture;
+    FIXTURE fixture;
     FixtureShear(&fixture, 2, 0.3, 1);
     FixtureSeal(&fixture, 0.2, 2e3);
     fixture.scene.macro.inflate = PETSC_TRUE;
@@ -263,7 +259,6 @@ TEST(CutbackReachesTheSameEnd)
     assert_true(!limited == !FixtureLast(&fixture)->cutbacks);
     reaction[limited] = FixtureLast(&fixture)->reaction[1][0];
     turgor[limited] = FixtureLast(&fixture)->turgor_mean;
-    FixtureDestroy(&fixture);
   }
   assert_true(PetscAbsReal(reaction[1] - reaction[0]) < 1e-8 * PetscAbsReal(reaction[0]));
   assert_true(PetscAbsReal(turgor[1] - turgor[0]) < 1e-8);
@@ -272,7 +267,7 @@ TEST(CutbackReachesTheSameEnd)
 /* Force that lifts the free end of Cook's membrane by 1, of 48. */
 static PetscReal CookForce(PetscInt n, GmshElements elements, PetscReal bulk_modulus)
 {
-  Fixture fixture;
+  FIXTURE fixture;
   PetscReal force;
 
   FixtureScene(&fixture, 1, 1, 1, 1);
@@ -284,7 +279,6 @@ static PetscReal CookForce(PetscInt n, GmshElements elements, PetscReal bulk_mod
   fixture.material->lambda = 0;
   Solve(&fixture);
   force = FixtureLast(&fixture)->reaction[1][1];
-  FixtureDestroy(&fixture);
   return force;
 }
 
@@ -317,5 +311,3 @@ TEST(ErrorsFallWithTheSquare)
     assert_true(fine.strain < 1e-3 && fine.turgor < 1e-2);
   }
 }
-
-TEST_GROUP(.petsc = 1);

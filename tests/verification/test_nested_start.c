@@ -60,5 +60,3 @@ TEST(ReasonNamesTheMeshThatItIsOf)
   assert_int_equal(r.status, LAM_NO_EQUILIBRIUM);
   assert_non_null(strstr(r.reason, "on 18 x 5 elements: the lumen of cell 0 collapses between"));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -98,5 +98,3 @@ TEST(ManyCellsWithThinWallsConverge)
   assert_int_equal(r.status, LAM_CONVERGED);
   assert_in_range(r.newton_iterations, 1, 8);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -157,5 +157,3 @@ TEST(OneCellHasNoInterface)
   assert_true(isnan(a.max_traction));
   assert_true(isnan(b.max_traction));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -137,5 +137,3 @@ TEST(ASingleCellIsNotSeparated)
     assert_true(law == LAM_INTERFACE_CONTACT ? r.max_lamella_shear == 0 : isnan(r.max_lamella_shear));
   }
 }
-
-TEST_GROUP(.petsc = 1);

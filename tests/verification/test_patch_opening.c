@@ -11,5 +11,3 @@ TEST(CellsComeApartAlongTheFirstPrincipalStretch)
   assert_int_equal(r.status, LAM_CONVERGED);
   assert_near(AngleBetweenAxes(FirstAxis(r.opening_moment), StretchAxis(PATCH_SHEAR)), 0.0, 15.0);
 }
-
-TEST_GROUP(.petsc = 1);

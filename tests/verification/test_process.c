@@ -1,6 +1,4 @@
-/*
-  Tissue that changes in time at a material point, against closed forms, fresh solves and balances.
-*/
+/* Tissue that changes in time at a material point, against closed forms, fresh solves and balances. */
 #include "support/test.h"
 #include "support/rve_fixture.h"
 #include <lamella/study.h>
@@ -530,8 +528,6 @@ TEST(cells_that_are_pulled_apart_no_longer_span_the_tissue)
   assert_true(event->response.percolating_directions < 2);
   assert_true(event->response.opening_fraction > f.states[0].response.opening_fraction + 0.01);
 }
-
-TEST_GROUP(.petsc = 1);
 
 /* ---- the study ---- */
 

@@ -25,15 +25,20 @@ static SealedTissue Sealed(const LamMicrostructure *micro, const LamLoad *load, 
   return s;
 }
 
-static LamResponse Solve(const LamMicrostructure *micro, const LamLoad *load, double bulk_modulus)
+static LamResponse SolveSealed(SealedTissue *s, const LamLoad *load)
 {
   LamResponse response;
-  OWNED(SealedTissue, SealedDestroy) s;
 
-  assert_int_equal(SealedCreate(micro, load, bulk_modulus, &s), 0);
-  assert_int_equal(SealedSolve(&s, load, &response), 0);
+  assert_int_equal(SealedSolve(s, load, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
   return response;
+}
+
+static LamResponse Solve(const LamMicrostructure *micro, const LamLoad *load, double bulk_modulus)
+{
+  OWNED(SealedTissue, SealedDestroy) s = Sealed(micro, load, bulk_modulus);
+
+  return SolveSealed(&s, load);
 }
 
 TEST(LumensFollowTheirPressures)
@@ -77,15 +82,13 @@ TEST(TangentFollowsFromThatAtThePressureReached)
   for (int k = 0; k < 5; k++) { /* one cell each */
     const LamResponse *sealed = &figures[k].sweep.response;
     LamLoad load = states[k].load;
-    LamResponse open;
     OWNED(SealedTissue, SealedDestroy) s = Sealed(&states[k].micro, &load, states[k].bulk_modulus);
-    double compliance;
+    const double compliance = s.water[0] / s.bulk_modulus;
 
-    compliance = s.water[0] / s.bulk_modulus;
     assert_int_equal(LamRVEUnseal(s.rve), 0);
     load.turgor = sealed->turgor_mean;
-    assert_int_equal(SealedSolve(&s, &load, &open), 0);
-    assert_int_equal(open.status, LAM_CONVERGED);
+    const LamResponse open = SolveSealed(&s, &load);
+
     for (int i = 0; i < 5; i++)
       for (int j = 0; j < 5; j++) {
         const int a = contact_components[i], b = contact_components[j];
@@ -178,12 +181,9 @@ TEST(AnswerDoesNotNeedTheStateThatWasSealed)
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
     const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, contact ? 0.002 : 0);
-    LamResponse near, far;
-    OWNED(SealedTissue, SealedDestroy) s;
+    OWNED(SealedTissue, SealedDestroy) s = Sealed(&micro, &load, SEALED_WATER);
+    const LamResponse near = SolveSealed(&s, &load), far = SolveFromReference(s.rve, load);
 
-    assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
-    assert_int_equal(SealedSolve(&s, &load, &near), 0);
-    far = SolveFromReference(s.rve, load);
     assert_int_equal(far.status, LAM_CONVERGED);
     for (int i = 0; i < 9; i++) assert_near(far.P[i], near.P[i], 1e-9);
   }
@@ -215,14 +215,13 @@ TEST(EachPressureHasItsNegativeEigenvalue)
 {
   LamMicrostructure micro = DefaultTissue();
   const LamLoad load = PlaneLoad(1, 0.1, 0, 1, 0.2);
-  LamResponse response;
-  OWNED(SealedTissue, SealedDestroy) s;
   PetscInt negative;
   PetscBool ok;
 
   micro.cells[0] = 2;
-  assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
-  assert_int_equal(SealedSolve(&s, &load, &response), 0);
+  OWNED(SealedTissue, SealedDestroy) s = Sealed(&micro, &load, SEALED_WATER);
+  const LamResponse response = SolveSealed(&s, &load);
+
   assert_true(response.stable);
   assert_int_equal(response.negative_eigenvalues, 0);
   assert_int_equal(LamLinearFactor(&s.rve->linear, 0.0, &negative, &ok), 0);
@@ -245,15 +244,12 @@ TEST(StressMayBePrescribed)
   for (int contact = 0; contact < 2; contact++) {
     const LamMicrostructure micro = contact ? ContactTissue(6, 2) : DefaultTissue();
     const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, contact ? 0.02 : 0);
-    LamResponse mixed, plain;
-    OWNED(SealedTissue, SealedDestroy) s;
+    OWNED(SealedTissue, SealedDestroy) s = Sealed(&micro, &load, SEALED_WATER);
+    const LamResponse mixed = SolveFree(&s, load), plain = SolveSealed(&s, &mixed.load);
 
-    assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
-    mixed = SolveFree(&s, load);
     assert_int_equal(mixed.status, LAM_CONVERGED);
     assert_near(mixed.P[0], 0.0, 1e-9);
     assert_near(mixed.P[4], 0.0, 1e-9);
-    assert_int_equal(SealedSolve(&s, &mixed.load, &plain), 0);
     for (int i = 0; i < 9; i++) assert_near(mixed.P[i], plain.P[i], 1e-8);
   }
 }
@@ -263,12 +259,11 @@ TEST(SealedTissueHasNoLimitTurgor)
 {
   const LamLoad load = PlaneLoad(1, 0, 0, 1, 0.05 / TISSUE_STRESS);
   LamMicrostructure micro = DefaultTissue();
-  LamResponse sealed;
-  OWNED(SealedTissue, SealedDestroy) s;
 
   micro.wall.law = LAM_WALL_MOONEY_RIVLIN;
-  assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
-  sealed = SolveFree(&s, load);
+  OWNED(SealedTissue, SealedDestroy) s = Sealed(&micro, &load, SEALED_WATER);
+  const LamResponse sealed = SolveFree(&s, load);
+
   assert_int_equal(sealed.status, LAM_CONVERGED);
   assert_true(sealed.turgor_mean < 0.1 * load.turgor);
   assert_int_equal(LamRVEUnseal(s.rve), 0);
@@ -280,13 +275,12 @@ TEST(UnsealedIsPrescribed)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
   const LamLoad load = ContactLoad(1, 0.1, 0, 1, 0.02, 0.002);
-  LamResponse plain, unsealed;
-  OWNED(SealedTissue, SealedDestroy) s;
+  const LamResponse plain = SolveTissue(&micro, load);
+  OWNED(SealedTissue, SealedDestroy) s = Sealed(&micro, &load, SEALED_WATER);
 
-  plain = SolveTissue(&micro, load);
-  assert_int_equal(SealedCreate(&micro, &load, SEALED_WATER, &s), 0);
   assert_int_equal(LamRVEUnseal(s.rve), 0);
-  unsealed = SolveFromReference(s.rve, load);
+  const LamResponse unsealed = SolveFromReference(s.rve, load);
+
   for (int i = 0; i < 9; i++) assert_near(unsealed.P[i], plain.P[i], 1e-10);
   assert_true(unsealed.turgor_mean == load.turgor && unsealed.turgor_spread == 0.0);
 }

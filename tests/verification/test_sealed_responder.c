@@ -316,5 +316,3 @@ TABULATED_TEST(TableOfCellsThatPartIsRefused, "law: contact, cohesion: 0.02 MPa"
   assert_int_equal(r.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(r.reason, "solve directly"));
 }
-
-TEST_GROUP(.petsc = 1);

@@ -61,5 +61,3 @@ TEST(LargestTractionBoundsTheMeans)
 
   for (int f = 0; f < 3; f++) assert_true(r.max_traction >= r.mean_face_traction[f]);
 }
-
-TEST_GROUP(.petsc = 1);

@@ -155,5 +155,3 @@ TEST(WeakLamellaOpensFirst)
     assert_true(fmax(largest[0], largest[1]) < LAM_VISIBLE_GAP);
   }
 }
-
-TEST_GROUP(.petsc = 1);

@@ -222,5 +222,3 @@ TEST(BeyondAllMeasureIsRefused)
   AssertRefused(1, 1e-110);
   AssertRefused(1, 1e-310);
 }
-
-TEST_GROUP(.petsc = 1);

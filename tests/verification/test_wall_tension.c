@@ -179,5 +179,3 @@ TEST(ContactBearsTheCohesionAtMost)
   assert_true(r.max_gap > LAM_VISIBLE_GAP && r.gap_place[2] >= 0 && r.gap_place[2] <= 1);
   assert_near(r.max_lamella_shear, 0.0, 0);
 }
-
-TEST_GROUP(.petsc = 1);
