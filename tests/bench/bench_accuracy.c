@@ -9,7 +9,7 @@
 #include <lamella/lamella.h>
 #include "error_model.h"
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 #include "support/random_reals.h"
 #include "support/tissue.h"
 

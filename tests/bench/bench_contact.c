@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include "support/contact_tissue.h"
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
 #define CASES 40

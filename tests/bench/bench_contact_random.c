@@ -17,7 +17,7 @@
 #include <unistd.h>
 #include "support/contact_tissue.h"
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 #include "support/random_reals.h"
 
 #define DRY_SHARE 0.1

@@ -8,10 +8,9 @@
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include "support/bare_tissue.h"
 #include "support/contact_tissue.h"
-#include "quantile.h"
+#include "measure.h"
 
 #define PAIRS 60
 #define LEAST_SECONDS 0.02 /* of a sample: as many states as take so long */
@@ -33,14 +32,6 @@ typedef struct {
   long long bytes;
   double seconds[PAIRS]; /* of a state */
 } Runner;
-
-static double ProcessorTime(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static long long BytesInUse(void)
 {
@@ -111,11 +102,11 @@ static PetscErrorCode CountBytes(Runner *r)
 
 static PetscErrorCode Sample(Runner *r, PetscInt states, double *seconds)
 {
-  const double begin = ProcessorTime();
+  const double begin = ProcessorSeconds();
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < states; k++) PetscCall(Solve(r));
-  *seconds = (ProcessorTime() - begin) / (double)states;
+  *seconds = (ProcessorSeconds() - begin) / (double)states;
   PetscFunctionReturn(0);
 }
 

@@ -3,13 +3,8 @@
   of them; the prediction of what a node will cost. Prints figures, asserts nothing. bench_coverage [DATABASE.h5 ...]
 */
 #include <stdio.h>
-#include <time.h>
 #include <build.h>
-
-static double Processor(void)
-{
-  return (double)clock() / CLOCKS_PER_SEC;
-}
+#include "measure.h"
 
 static PetscErrorCode Cover(const LamScene *scene, LamDatabase file, PetscInt n)
 {
@@ -30,10 +25,10 @@ static PetscErrorCode Cover(const LamScene *scene, LamDatabase file, PetscInt n)
   PetscCall(LamDatabaseCreateEmpty(scene, &table));
   PetscCall(LamDatabaseAdd(table, n, keys, records));
   PetscCall(LamDatabaseSetGrid(table, &grid));
-  begin = Processor();
+  begin = ProcessorSeconds();
   PetscCall(LamCoverageCompute(scene, &whole, table, scene->accuracy, n, NULL, &coverage));
   printf("%8" PetscInt_FMT " nodes: %5.0f ms for %" PetscInt_FMT " states, %" PetscInt_FMT " nodes lacking\n", n,
-         1e3 * (Processor() - begin), coverage.states, coverage.lacking);
+         1e3 * (ProcessorSeconds() - begin), coverage.states, coverage.lacking);
   PetscCall(LamCoverageDestroy(&coverage));
   PetscCall(LamDatabaseClose(&table));
   PetscCall(PetscFree(text));
@@ -55,11 +50,11 @@ static PetscErrorCode Predict(LamDatabase file, PetscInt n)
   PetscCall(LamNodeCostsCreate(grid, &costs));
   for (PetscInt i = 0; i < n; i++)
     if (!LamKeyIsFreeCell(keys[i])) PetscCall(LamNodeCostsLearn(costs, keys[i], &records[i]));
-  begin = Processor();
+  begin = ProcessorSeconds();
   for (PetscInt i = 0; i < n; i++)
     if (!LamKeyIsFreeCell(keys[i])) sum += LamNodeCostsPredict(costs, keys[i]);
-  printf("prediction: %.2g us a node (%.3g factorisations on average)\n", 1e6 * (Processor() - begin) / (double)n,
-         sum / (double)n);
+  printf("prediction: %.2g us a node (%.3g factorisations on average)\n",
+         1e6 * (ProcessorSeconds() - begin) / (double)n, sum / (double)n);
   PetscCall(LamNodeCostsDestroy(&costs));
   PetscFunctionReturn(0);
 }

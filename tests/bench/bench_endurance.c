@@ -11,10 +11,9 @@
       --kind NAME        states of this kind alone, such as contact
       --time-failures    what each failure costs, and nothing else
 */
-#include <time.h>
 #include "support/endurance.h"
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 
 #define PARTS 10
 #define YARDSTICK 128
@@ -44,20 +43,11 @@ typedef struct {
   long iterations; /* of the present part */
 } Run;
 
-/* Of the processor: others may use it, too. */
-static double Milliseconds(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
 /* Products of a matrix that fits the cache, as factors are. */
 static void MeasureYardstick(Run *run)
 {
   static double A[YARDSTICK][YARDSTICK], x[YARDSTICK], y[YARDSTICK];
-  const double begin = Milliseconds();
+  const double begin = 1e3 * ProcessorSeconds();
 
   for (int i = 0; i < YARDSTICK; i++) {
     x[i] = 1;
@@ -70,7 +60,7 @@ static void MeasureYardstick(Run *run)
     }
     for (int i = 0; i < YARDSTICK; i++) x[i] = y[i] / y[0];
   }
-  run->yardstick[run->yardsticks++] = Milliseconds() - begin;
+  run->yardstick[run->yardsticks++] = 1e3 * ProcessorSeconds() - begin;
 }
 
 static PetscErrorCode Next(Run *run, int k)
@@ -81,7 +71,7 @@ static PetscErrorCode Next(Run *run, int k)
 
   PetscFunctionBeginUser;
   if (k % 10 == 0) MeasureYardstick(run);
-  begin = Milliseconds();
+  begin = 1e3 * ProcessorSeconds();
   if (run->options->kind >= 0) kind = (EnduranceKind)run->options->kind;
   if (run->options->failures && k % 10 == 8) kind = ENDURANCE_FAILURE;
   if (kind == ENDURANCE_FAILURE)
@@ -89,7 +79,7 @@ static PetscErrorCode Next(Run *run, int k)
   else
     PetscCall(EnduranceSolve(&run->e, kind, k, &r));
   run->iterations += r.newton_iterations;
-  run->ms[kind][run->count[kind]++] = Milliseconds() - begin;
+  run->ms[kind][run->count[kind]++] = 1e3 * ProcessorSeconds() - begin;
   PetscFunctionReturn(0);
 }
 
@@ -170,11 +160,12 @@ static PetscErrorCode TimeFailures(void)
   PetscCall(EnduranceCreate(&e));
   for (int f = 0; f < FAILURE_COUNT; f++)
     for (int k = 0; k < 3; k++) {
-      const double begin = Milliseconds();
+      const double begin = 1e3 * ProcessorSeconds();
 
       PetscCall(EnduranceFail(&e, (EnduranceFailure)f, k, &r));
-      printf("%-34s %8.2f ms %5d iterations %5d factorisations %s: %s\n", failure_names[f], Milliseconds() - begin,
-             (int)r.newton_iterations, (int)r.factorisations, LamStatusNames[r.status], r.reason);
+      printf("%-34s %8.2f ms %5d iterations %5d factorisations %s: %s\n", failure_names[f],
+             1e3 * ProcessorSeconds() - begin, (int)r.newton_iterations, (int)r.factorisations,
+             LamStatusNames[r.status], r.reason);
     }
   PetscCall(EnduranceDestroy(&e));
   PetscFunctionReturn(0);

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <lamella/lamella.h>
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 #include "support/random_reals.h"
 #include "support/tissue.h"
 

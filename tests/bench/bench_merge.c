@@ -91,7 +91,7 @@ static PetscErrorCode MergeAll(PetscInt shards, PetscBool salvage)
   PetscCall(LamDatabaseMerge(out, shards, files, &options, &report));
   PetscCall(PetscTime(&end));
   printf("  %-8s %6.2f s, processor %.2f s, at most %.0f MB   %" PetscInt_FMT " records, %lld duplicates, %.0f MB/s\n",
-         salvage ? "salvage" : "merge", end - start, Processor(), Memory("VmHWM"), report.records,
+         salvage ? "salvage" : "merge", end - start, ProcessorSeconds(), Memory("VmHWM"), report.records,
          (long long)report.duplicates, FileMB(out) / (end - start));
   PetscCall(PetscFree2(files, paths));
   PetscFunctionReturn(0);

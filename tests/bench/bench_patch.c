@@ -8,19 +8,12 @@
       --full   also blocks of more than 8 x 8 cells, empty ones up to a shear of 0.25 (minutes)
 */
 #include <stdio.h>
-#include <sys/resource.h>
+#include "measure.h"
 #include "options.h"
 #include "support/uneven_cells.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
 #define LARGEST_BLOCK 8 /* without --full */
-
-static double PeakMemory(void)
-{
-  struct rusage usage;
-
-  return getrusage(RUSAGE_SELF, &usage) ? NAN : (double)usage.ru_maxrss / 1024.0;
-}
 
 static PetscErrorCode PrintDerivative(const ContactState *state)
 {

@@ -28,7 +28,7 @@
 #include "build.h"
 #include "database_internal.h"
 #include "options.h"
-#include "quantile.h"
+#include "measure.h"
 #include "support/tissue.h"
 
 #define ACCURACY 0.01

@@ -52,11 +52,11 @@ static PetscErrorCode Write(const LamScene *scene, PetscInt n, const PetscInt64 
     const PetscInt count = PetscMin(block, n - first);
 
     for (PetscInt i = 0; i < count; i++) PetscCall(Synthetic(grid, keys[first + i], first + i, &responses[i]));
-    processor -= Processor();
+    processor -= ProcessorSeconds();
     PetscCall(PetscTime(&start));
     PetscCall(LamRecordWriterCommit(writer, count, keys + first, responses));
     PetscCall(PetscTime(&end));
-    processor += Processor();
+    processor += ProcessorSeconds();
     seconds += end - start;
   }
   PetscCall(LamRecordWriterClose(&writer));
@@ -74,14 +74,14 @@ static void Print(const char what[], PetscLogDouble start, double processor, dou
   PetscLogDouble now;
 
   (void)PetscTime(&now);
-  printf("  %-15s %6.2f s, processor %.2f s   %.0f MB, at most %.0f MB\n", what, now - start, Processor() - processor,
-         Memory("VmRSS") - before, Memory("VmHWM") - before);
+  printf("  %-15s %6.2f s, processor %.2f s   %.0f MB, at most %.0f MB\n", what, now - start,
+         ProcessorSeconds() - processor, Memory("VmRSS") - before, Memory("VmHWM") - before);
 }
 
 static PetscErrorCode Read(void)
 {
   const LamLoad load = {{1.05, 0.02, 0, 0.01, 1.08, 0, 0, 0, 1}, 0.15, 0};
-  const double before = Memory("VmRSS"), processor = Processor();
+  const double before = Memory("VmRSS"), processor = ProcessorSeconds();
   const LamResponse *records;
   PetscLogDouble start;
   LamDatabase database;

@@ -1,35 +1,16 @@
 /* Time of one RVE state in a warm process against the refactorisations it needs; prints figures, asserts nothing. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <petsctime.h>
 #include <lamella/lamella.h>
+#include "measure.h"
 #include "solve.h"
 #include "support/tissue.h"
 
 #define REPEATS 41
 
-static int Compare(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-
-  return (x > y) - (x < y);
-}
-
 static double Median(double *t)
 {
-  qsort(t, REPEATS, sizeof(*t), Compare);
-  return t[REPEATS / 2];
-}
-
-static LamMicrostructure Tissue(PetscInt along, PetscInt through)
-{
-  LamMicrostructure micro = {.wall_thickness = 0.15, .cells = {1, 1}, .along = along, .through = through};
-
-  micro.wall.C1 = 1.0 / 1.1;
-  micro.wall.C2 = 0.1 / 1.1;
-  micro.wall.C4 = 10.0 / 1.1;
-  micro.wall.bulk_modulus = 1000.0;
-  return micro;
+  return Quantile(t, REPEATS, 0.5);
 }
 
 typedef struct {
@@ -72,7 +53,7 @@ static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
 
 static PetscErrorCode Run(PetscInt along, PetscInt through)
 {
-  const LamMicrostructure micro = Tissue(along, through);
+  LamMicrostructure micro = DefaultTissue();
   const LamLoad load = {.F = {1, 0.2, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.02 / 0.11};
   LamRVE rve;
   LamRVEState state;
@@ -81,6 +62,8 @@ static PetscErrorCode Run(PetscInt along, PetscInt through)
   Times times = {0};
 
   PetscFunctionBeginUser;
+  micro.along = along;
+  micro.through = through;
   PetscCall(NewTissue(&micro, &rve, &state));
   for (PetscInt k = -2; k < REPEATS; ++k) {
     PetscCall(LamRVEStateReset(rve, state));

@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <fcntl.h>
 #include "clock.h"
-#include "quantile.h"
+#include "measure.h"
 #include "support/tissue.h"
 
 #define ROUNDS 21

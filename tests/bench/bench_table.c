@@ -8,7 +8,7 @@
 #include <petsctime.h>
 #include "support/random_reals.h"
 #include <hermite_cell.h>
-#include "quantile.h"
+#include "measure.h"
 
 #include "support/strain_cycle.h"
 

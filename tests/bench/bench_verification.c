@@ -1,8 +1,7 @@
 /* The figures of docs/results/verification.md: errors against references and theory, buckling, extremes; asserts
  * nothing. */
 #include <stdio.h>
-#include <sys/resource.h>
-#include <petsctime.h>
+#include "measure.h"
 #include "support/buckling.h"
 #include "support/contact_checks.h"
 #include "support/contact_blocks.h"
@@ -14,13 +13,6 @@
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/bonded.json"
 #define CONTACT_DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
 #define TURGOR (0.02 / TISSUE_STRESS)
-
-static double PeakMemory(void)
-{
-  struct rusage usage;
-
-  return getrusage(RUSAGE_SELF, &usage) ? NAN : usage.ru_maxrss / 1024.0;
-}
 
 /* First, while the process has solved nothing else. */
 static PetscErrorCode Memory(void)

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+#include "measure.h"
 #include "grid.h"
 
 static const char scene_text[] = "version: 1\n"
@@ -14,12 +14,6 @@ static const char scene_text[] = "version: 1\n"
                                  "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
                                  "  mesh: {along: 6, through: 2}\n"
                                  "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n";
-
-/* Processor time of this process, s: on a busy machine less noisy than the clock on the wall. */
-static inline double Processor(void)
-{
-  return (double)clock() / CLOCKS_PER_SEC;
-}
 
 /* A line of /proc/self/status in MB: VmRSS, the memory held now; VmHWM, the most so far. */
 static inline double Memory(const char name[])

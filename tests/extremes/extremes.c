@@ -14,6 +14,7 @@
 #include "extremes_picture.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <getopt.h>
 #include <jansson.h>
 #include <math.h>
 #include <poll.h>
@@ -61,21 +62,13 @@ static json_t *Real(PetscReal value)
 
 static json_t *Response(const LamResponse *r)
 {
-  json_t *object = json_object(), *P = json_array();
+  json_t *P = json_array();
 
   for (int i = 0; i < 9; i++) json_array_append_new(P, Real(r->P[i]));
-  json_object_set_new(object, "status", json_string(LamStatusNames[r->status]));
-  json_object_set_new(object, "reason", json_string(r->reason));
-  json_object_set_new(object, "P", P);
-  json_object_set_new(object, "energy", Real(r->energy));
-  json_object_set_new(object, "lumen", Real(r->lumen_fraction));
-  json_object_set_new(object, "estimate", Real(r->error_estimate));
-  json_object_set_new(object, "branch", json_integer(r->branch));
-  json_object_set_new(object, "floating", json_integer(r->floating_cells));
-  json_object_set_new(object, "zero_modes", json_integer(r->zero_modes));
-  json_object_set_new(object, "unknowns", json_integer(r->unknowns));
-  json_object_set_new(object, "factorisations", json_integer(r->factorisations));
-  return object;
+  return json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:i, s:i, s:i, s:i, s:i}", "status", LamStatusNames[r->status],
+                   "reason", r->reason, "P", P, "energy", Real(r->energy), "lumen", Real(r->lumen_fraction), "estimate",
+                   Real(r->error_estimate), "branch", (int)r->branch, "floating", (int)r->floating_cells, "zero_modes",
+                   (int)r->zero_modes, "unknowns", (int)r->unknowns, "factorisations", (int)r->factorisations);
 }
 
 static json_t *Line(const ExtremesCase *c, const ExtremesResult *r, PetscBool routes)
@@ -362,51 +355,55 @@ static int PrintList(const Run *run)
   return 0;
 }
 
+static int Usage(void)
+{
+  fprintf(stderr, "extremes FILE.jsonl [--first ID] [--count N] [--ids LIST] [--jobs J] [--no-routes]\n"
+                  "extremes FILE.jsonl --picture\nextremes --list [--first ID] [--count N]\nextremes --scene ID\n");
+  return 1;
+}
+
+static int SolveAll(Run *run)
+{
+  run->done = calloc((size_t)(run->end - run->first), 1);
+  if (run->list) ReadList(run);
+  ForLines(run->path, TakeDone, run);
+  run->file = open(run->path, O_RDWR | O_CREAT | O_APPEND, 0644);
+  EndLine(run->file);
+  signal(SIGPIPE, SIG_IGN);
+  Supervise(run);
+  close(run->file);
+  free(run->done);
+  return Summarise(run) ? 0 : 3;
+}
+
 int main(int argc, char **argv)
 {
+  static const struct option names[] = {{"scene", required_argument, NULL, 's'},
+                                        {"count", required_argument, NULL, 'n'},
+                                        {"first", required_argument, NULL, 'f'},
+                                        {"jobs", required_argument, NULL, 'j'},
+                                        {"ids", required_argument, NULL, 'i'},
+                                        {"no-routes", no_argument, NULL, 'r'},
+                                        {"picture", no_argument, NULL, 'p'},
+                                        {"list", no_argument, NULL, 'l'},
+                                        {0}};
   Run run = {.first = 0, .end = ExtremesPairCount(), .jobs = 1, .routes = PETSC_TRUE};
   PetscInt count = -1;
-  PetscBool list = PETSC_FALSE, picture = PETSC_FALSE, is_known = PETSC_TRUE;
+  int option, what = 0;
 
-  for (int k = 1; k < argc; k++) {
-    const char *value = k + 1 < argc ? argv[k + 1] : "0";
-
-    if (!strcmp(argv[k], "--scene")) return PrintScene(atoi(value));
-    if (!strcmp(argv[k], "--count"))
-      count = atoi(value), k++;
-    else if (!strcmp(argv[k], "--first"))
-      run.first = atoi(value), k++;
-    else if (!strcmp(argv[k], "--jobs"))
-      run.jobs = PetscMin(MAX_JOBS, PetscMax(1, atoi(value))), k++;
-    else if (!strcmp(argv[k], "--ids"))
-      run.list = value, run.end = 1000000, k++;
-    else if (!strcmp(argv[k], "--no-routes"))
-      run.routes = PETSC_FALSE;
-    else if (!strcmp(argv[k], "--picture"))
-      picture = PETSC_TRUE;
-    else if (!strcmp(argv[k], "--list"))
-      list = PETSC_TRUE;
-    else if (argv[k][0] != '-')
-      run.path = argv[k];
-    else
-      is_known = PETSC_FALSE;
+  while ((option = getopt_long(argc, argv, "", names, NULL)) != -1) {
+    if (option == '?') return Usage();
+    if (option == 's') return PrintScene(atoi(optarg));
+    if (option == 'n') count = atoi(optarg);
+    if (option == 'f') run.first = atoi(optarg);
+    if (option == 'j') run.jobs = PetscMin(MAX_JOBS, PetscMax(1, atoi(optarg)));
+    if (option == 'i') run.list = optarg, run.end = 1000000;
+    if (option == 'r') run.routes = PETSC_FALSE;
+    if (option == 'p' || option == 'l') what = option;
   }
+  run.path = argv[optind];
   if (count >= 0 || run.first >= run.end) run.end = run.first + PetscMax(1, count);
-  if (list && is_known) return PrintList(&run);
-  if (!run.path || !is_known) {
-    fprintf(stderr, "extremes FILE.jsonl [--first ID] [--count N] [--ids LIST] [--jobs J] [--no-routes]\n"
-                    "extremes FILE.jsonl --picture\nextremes --list [--first ID] [--count N]\nextremes --scene ID\n");
-    return 1;
-  }
-  if (picture) return Draw(&run);
-  run.done = calloc((size_t)(run.end - run.first), 1);
-  if (run.list) ReadList(&run);
-  ForLines(run.path, TakeDone, &run);
-  run.file = open(run.path, O_RDWR | O_CREAT | O_APPEND, 0644);
-  EndLine(run.file);
-  signal(SIGPIPE, SIG_IGN);
-  Supervise(&run);
-  close(run.file);
-  free(run.done);
-  return Summarise(&run) ? 0 : 3;
+  if (what == 'l') return PrintList(&run);
+  if (!run.path) return Usage();
+  return what == 'p' ? Draw(&run) : SolveAll(&run);
 }

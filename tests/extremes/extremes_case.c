@@ -165,43 +165,30 @@ static void ChooseMesh(const ExtremesCase *c, PetscInt finer, PetscInt *along, P
   *through = PetscMin(50, *through * finer);
 }
 
-static void Gradient(const ExtremesCase *c, PetscReal F[4])
+/* Between two texts. */
+static void WriteF(Writer *w, const char before[], const PetscReal F[4], const char after[])
 {
-  const PetscReal s1 = PetscExpReal(c->value[EXTREMES_STRAIN1]), s2 = PetscExpReal(c->value[EXTREMES_STRAIN2]);
-
-  F[0] = s1;
-  F[1] = c->value[EXTREMES_SHEAR] * s2;
-  F[2] = 0.0;
-  F[3] = s2;
-}
-
-static void WriteF(Writer *w, const PetscReal F[4])
-{
-  Write(w, "[[%.17g, %.17g], [%.17g, %.17g]]", (double)F[0], (double)F[1], (double)F[2], (double)F[3]);
+  Write(w, "%s[[%.17g, %.17g], [%.17g, %.17g]]%s", before, (double)F[0], (double)F[1], (double)F[2], (double)F[3],
+        after);
 }
 
 static void WriteLoad(const ExtremesCase *c, const ExtremesRoute *route, Writer *w)
 {
-  const PetscReal increment = c->value[EXTREMES_INCREMENT];
-  PetscReal F[4], before[4];
+  const PetscReal increment = c->value[EXTREMES_INCREMENT], s2 = PetscExpReal(c->value[EXTREMES_STRAIN2]);
+  const PetscReal F[4] = {PetscExpReal(c->value[EXTREMES_STRAIN1]), c->value[EXTREMES_SHEAR] * s2, 0.0, s2};
+  PetscReal before[4];
 
-  Gradient(c, F);
   Write(w, "load:\n");
   if (route->ramp > 1) {
-    Write(w, "  - {ramp: {to: ");
-    WriteF(w, F);
+    WriteF(w, "  - {ramp: {to: ", F, "");
     Write(w, ", steps: %d}}\n", (int)route->ramp);
     return;
   }
   if (increment < 1.0) {
     for (PetscInt i = 0; i < 4; i++) before[i] = F[i] + increment * ((i == 0 || i == 3 ? 1.0 : 0.0) - F[i]);
-    Write(w, "  - {F: ");
-    WriteF(w, before);
-    Write(w, "}\n");
+    WriteF(w, "  - {F: ", before, "}\n");
   }
-  Write(w, "  - {F: ");
-  WriteF(w, F);
-  Write(w, "}\n");
+  WriteF(w, "  - {F: ", F, "}\n");
 }
 
 static void WriteVariation(const ExtremesCase *c, Writer *w)

@@ -103,20 +103,6 @@ static PetscReal Difference(const LamResponse *a, const LamResponse *b)
   return a->status == LAM_CONVERGED && b->status == LAM_CONVERGED ? LamStressError(a->P, b->P) : NAN;
 }
 
-/* The finer mesh; and where its answer differs, whether it is on another branch. */
-static PetscErrorCode SolveFiner(const ExtremesCase *c, ExtremesResult *result)
-{
-  const ExtremesRoute route = {.finer = 2, .ramp = 1};
-  Solver s;
-
-  PetscFunctionBeginUser;
-  PetscCall(SolverCreate(c, &route, 2 * RouteSeconds(result), &s));
-  PetscCall(SolveLoads(&s, &result->finer));
-  result->mesh_error = Difference(&result->state, &result->finer);
-  PetscCall(SolverDestroy(&s));
-  PetscFunctionReturn(0);
-}
-
 static ExtremesVerdict Verdict(const ExtremesResult *r)
 {
   const PetscReal estimate = r->state.error_estimate; /* NaN: nothing is claimed */
@@ -135,7 +121,7 @@ static ExtremesVerdict Verdict(const ExtremesResult *r)
 PetscErrorCode ExtremesJudge(const ExtremesCase *c, PetscBool routes, ExtremesResult *result)
 {
   const ExtremesRoute plain = {.finer = 1, .ramp = 1}, ramp = {.finer = 1, .ramp = RAMP};
-  const ExtremesRoute one_step = {.finer = 1, .ramp = 1, .one_step = PETSC_TRUE};
+  const ExtremesRoute one_step = {.finer = 1, .ramp = 1, .one_step = PETSC_TRUE}, finer = {.finer = 2, .ramp = 1};
   const double begin = Now();
   LamRVEEstimate estimate;
   Solver s;
@@ -156,7 +142,10 @@ PetscErrorCode ExtremesJudge(const ExtremesCase *c, PetscBool routes, ExtremesRe
       PetscCall(SolveRoute(c, &one_step, RouteSeconds(result), &result->other));
       result->other_error = Difference(&result->state, &result->other);
     }
-    if (s.rve->mesh.element_count <= FINER_LIMIT) PetscCall(SolveFiner(c, result));
+    if (s.rve->mesh.element_count <= FINER_LIMIT) {
+      PetscCall(SolveRoute(c, &finer, 2 * RouteSeconds(result), &result->finer));
+      result->mesh_error = Difference(&result->state, &result->finer);
+    }
   }
   PetscCall(SolverDestroy(&s));
   result->verdict = Verdict(result);

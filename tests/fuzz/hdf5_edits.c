@@ -264,12 +264,6 @@ static void ChangeMicrostructure(Edits *e)
 
 /* ---- edits of the records ---- */
 
-/* The committed records as one text of bytes; the caller frees them. */
-static unsigned char *ReadRecords(hid_t dataset, hid_t type, size_t *bytes)
-{
-  return dataset >= 0 && type >= 0 ? ReadAll(dataset, type, bytes) : NULL;
-}
-
 static void MendRecords(Edits *e, hid_t dataset, const unsigned char *bytes, size_t record, int64_t count)
 {
   uint32_t sum = 0;
@@ -290,7 +284,7 @@ static void ChangeRecords(Edits *e)
   size_t total, at;
   uint32_t sum;
 
-  bytes = ReadRecords(dataset, type, &total);
+  bytes = dataset >= 0 ? ReadAll(dataset, type, &total) : NULL;
   if (bytes && size > 16) {
     record = bytes + Next(e) % (total / size) * size;
     at = Short(e) % (size - 4);
@@ -321,7 +315,7 @@ static void ChangeCount(Edits *e)
   else
     count = Next(e);
   if (dataset >= 0 && extent) H5Dset_extent(dataset, &extent);
-  bytes = ReadRecords(dataset, type, &total);
+  bytes = dataset >= 0 ? ReadAll(dataset, type, &total) : NULL;
   if (dataset >= 0) (void)LamAttributeUpdate(PATH, dataset, "committed", H5T_NATIVE_INT64, &count);
   if (bytes)
     MendRecords(e, dataset, bytes, H5Tget_size(type),
@@ -335,38 +329,14 @@ static void ChangeCount(Edits *e)
 
 static hid_t TypeOf(unsigned which, size_t size)
 {
-  const hid_t text = H5Tcopy(H5T_C_S1);
-  hid_t type = -1;
+  const hid_t known[] = {H5T_IEEE_F64LE, H5T_STD_I64LE, H5T_IEEE_F32LE, H5T_STD_I32BE, H5T_C_S1, H5T_C_S1};
+  hid_t type;
 
-  switch (which % 8) {
-  case 0:
-    type = H5Tcopy(H5T_IEEE_F64LE);
-    break;
-  case 1:
-    type = H5Tcopy(H5T_STD_I64LE);
-    break;
-  case 2:
-    type = H5Tcopy(H5T_IEEE_F32LE);
-    break;
-  case 3:
-    type = H5Tcopy(H5T_STD_I32BE);
-    break;
-  case 4:
-    type = H5Tcopy(text);
-    H5Tset_size(type, PetscMax(size, 1));
-    break;
-  case 5:
-    type = H5Tcopy(text);
-    H5Tset_size(type, H5T_VARIABLE);
-    break;
-  case 6:
-    type = H5Tarray_create2(H5T_IEEE_F64LE, 1, &(const hsize_t){2});
-    break;
-  case 7:
-    type = H5Tvlen_create(H5T_STD_I8LE);
-    break;
-  }
-  H5Tclose(text);
+  if (which % 8 == 6) return H5Tarray_create2(H5T_IEEE_F64LE, 1, &(const hsize_t){2});
+  if (which % 8 == 7) return H5Tvlen_create(H5T_STD_I8LE);
+  type = H5Tcopy(known[which % 8]);
+  if (which % 8 == 4) H5Tset_size(type, PetscMax(size, 1));
+  if (which % 8 == 5) H5Tset_size(type, H5T_VARIABLE);
   return type;
 }
 
@@ -428,27 +398,24 @@ static const char *const attributes[] = {"format",        "format_version", "kin
 
 static void WriteAttribute(Edits *e, hid_t object, const char name[])
 {
-  const unsigned how = Next(e);
+  const unsigned how = Next(e) % 5;
   unsigned char value[8];
   char text[TEXT_ROOM + 1] = "";
 
   if (H5Aexists(object, name) > 0) H5Adelete(object, name);
-  switch (how % 5) {
-  case 1:
+  if (how == 1) {
     for (unsigned i = 0, n = Next(e); i < n; i++) text[i] = (char)Next(e);
     (void)LamAttributeWriteText(PATH, object, name, text);
-    break;
-  case 2:
-  case 3:
+  }
+  if (how == 2 || how == 3) {
     Value(e, value);
-    (void)LamAttributeWriteNumber(PATH, object, name, how % 5 == 2 ? H5T_IEEE_F64LE : H5T_STD_I64LE,
-                                  how % 5 == 2 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, value);
-    break;
-  case 4: {
+    (void)LamAttributeWriteNumber(PATH, object, name, how == 2 ? H5T_IEEE_F64LE : H5T_STD_I64LE,
+                                  how == 2 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, value);
+  }
+  if (how == 4) {
     const int32_t number = (int32_t)Next(e);
 
     (void)LamAttributeWriteNumber(PATH, object, name, H5T_STD_I32LE, H5T_NATIVE_INT32, &number);
-  }
   }
 }
 
@@ -470,46 +437,52 @@ static void ChangeAttribute(Edits *e)
 
 /* ---- edits of bytes ---- */
 
-static void ChangeByte(Edits *e)
+/* The open file, and a place in it; -1: it is empty. */
+static int OpenAt(const Edits *e, size_t place, off_t *at)
 {
-  const size_t place = Short(e) | (size_t)(Next(e) % 8) << 16;
-  const unsigned flips = Next(e);
   const int fd = open(e->path, O_RDWR | O_CLOEXEC);
   const off_t size = lseek(fd, 0, SEEK_END);
-  unsigned char byte;
 
-  if (size > 0 && pread(fd, &byte, 1, (off_t)place % size) == 1) {
+  *at = size > 0 ? (off_t)place % size : -1;
+  return fd;
+}
+
+static size_t Place(Edits *e)
+{
+  const size_t low = Short(e);
+
+  return low | (size_t)(Next(e) % 8) << 16;
+}
+
+static void ChangeByte(Edits *e)
+{
+  const size_t place = Place(e);
+  const unsigned flips = Next(e);
+  unsigned char byte;
+  off_t at;
+  const int fd = OpenAt(e, place, &at);
+
+  if (at >= 0 && pread(fd, &byte, 1, at) == 1) {
     byte ^= (unsigned char)flips;
-    FuzzCheck(pwrite(fd, &byte, 1, (off_t)place % size) == 1, "%s cannot be written", e->path);
+    FuzzCheck(pwrite(fd, &byte, 1, at) == 1, "%s cannot be written", e->path);
   }
   close(fd);
 }
 
 static void Cut(Edits *e)
 {
-  const size_t place = Short(e) | (size_t)(Next(e) % 8) << 16;
-  const int fd = open(e->path, O_RDWR | O_CLOEXEC);
-  const off_t size = lseek(fd, 0, SEEK_END);
+  off_t at;
+  const int fd = OpenAt(e, Place(e), &at);
 
-  if (size > 0) FuzzCheck(!ftruncate(fd, (off_t)place % size), "%s cannot be cut", e->path);
+  if (at >= 0) FuzzCheck(!ftruncate(fd, at), "%s cannot be cut", e->path);
   close(fd);
 }
 
 /* ---- all of them ---- */
 
-static const struct {
-  void (*edit)(Edits *);
-  PetscBool of_bytes; /* HDF5 is done with the file */
-} kinds[] = {{ChangeValue, PETSC_FALSE},
-             {ChangeText, PETSC_FALSE},
-             {ChangeMicrostructure, PETSC_FALSE},
-             {ChangeRecords, PETSC_FALSE},
-             {ChangeCount, PETSC_FALSE},
-             {ChangeShape, PETSC_FALSE},
-             {Replace, PETSC_FALSE},
-             {ChangeAttribute, PETSC_FALSE},
-             {ChangeByte, PETSC_TRUE},
-             {Cut, PETSC_TRUE}};
+static void (*const edits[])(Edits *) = {ChangeValue, ChangeText, ChangeMicrostructure, ChangeRecords, ChangeCount,
+                                         ChangeShape, Replace,    ChangeAttribute,      ChangeByte,    Cut};
+enum { FIRST_OF_BYTES = 8 }; /* of those for which HDF5 must be done with the file */
 
 static void CloseEdited(Edits *e)
 {
@@ -520,10 +493,10 @@ static void CloseEdited(Edits *e)
 static void Apply(Edits *e)
 {
   for (int n = 0; n < MOST_EDITS && e->at < e->end; n++) {
-    const unsigned kind = Next(e) % PETSC_STATIC_ARRAY_LENGTH(kinds);
+    const unsigned kind = Next(e) % PETSC_STATIC_ARRAY_LENGTH(edits);
 
-    if (kinds[kind].of_bytes) CloseEdited(e);
-    if (kinds[kind].of_bytes || e->file >= 0) kinds[kind].edit(e);
+    if (kind >= FIRST_OF_BYTES) CloseEdited(e);
+    if (kind >= FIRST_OF_BYTES || e->file >= 0) edits[kind](e);
   }
   CloseEdited(e);
 }
