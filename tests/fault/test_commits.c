@@ -4,7 +4,6 @@
   before, unchanged, and go on. Between two syncs the system may bring writes to the disk in any order, sector by
   sector: any part of them must do, too, which stands for a loss of power.
 */
-#include "support/test.h"
 #include "../unit/record_fixture.h"
 #include <signal.h>
 #include <sys/wait.h>

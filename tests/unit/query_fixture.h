@@ -5,7 +5,6 @@
 
 #include "support/test.h"
 #include <lamella/database.h>
-#include <math.h>
 #include <string.h>
 
 #define THETA 0.2 /* orientation of the lattice */

@@ -1,6 +1,5 @@
 /* Parts of a sample box: each state is in one of them, they are of like size, and they are boxes. */
 #include "support/test.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "build.h"

@@ -1,5 +1,4 @@
 /* Small definite systems without pivots, and what is not definite. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "cholesky.h"
 

@@ -1,6 +1,5 @@
 /* What a database keeps of its records: compact nodes, whole responses of the others and of those that are asked for.
  */
-#include "support/test.h"
 #include "record_fixture.h"
 #include "database_internal.h"
 

@@ -1,8 +1,6 @@
 /* The wall element: patch test, derivatives, projection, invariance. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/displaced.h"
-#include "support/random_reals.h"
 
 static const LamWall quadratic = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
 static LamWall wall = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};

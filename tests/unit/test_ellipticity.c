@@ -1,6 +1,5 @@
 /* The weakest band of a tangent and the weakest shear band of a wall: exact cases, and searches over all directions. */
 #include "support/test.h"
-#include <math.h>
 #include <string.h>
 #include <lamella/ellipticity.h>
 #include "support/random_reals.h"

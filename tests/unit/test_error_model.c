@@ -1,5 +1,4 @@
 /* The planner's error of a mesh, and the mesh that it takes for an accuracy. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "error_model.h"
 

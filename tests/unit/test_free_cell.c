@@ -1,9 +1,7 @@
 /* Cells that touch no one, of a tissue with known answers: what lies between the knots, and the text of them. */
 #include "support/test.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include "free_cell.h"
 #include "support/random_reals.h"
 #include "test_scene_message.h"

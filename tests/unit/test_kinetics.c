@@ -1,7 +1,6 @@
 /* Kinetic laws: rates at a temperature, and their derivatives. */
 #include "support/test.h"
 #include <lamella/kinetics.h>
-#include <math.h>
 
 #define ZERO_CELSIUS 273.15
 

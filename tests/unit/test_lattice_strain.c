@@ -1,6 +1,5 @@
 /* Lattice strains: kinematics, and stress and tangent from a potential of them and back. */
 #include "support/test.h"
-#include <math.h>
 #include <string.h>
 #include "lattice_strain.h"
 #include "support/random_reals.h"

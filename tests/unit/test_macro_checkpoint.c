@@ -1,5 +1,4 @@
 /* A macroscale run that goes on from an archive of an earlier one; archives themselves. */
-#include "support/test.h"
 #include "support/macro_fixture.h"
 #include <stdio.h>
 #include <unistd.h>

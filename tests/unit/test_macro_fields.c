@@ -1,7 +1,5 @@
 /* Fields of the macroscale solver: what is kept of material points, their places and means. */
-#include "support/test.h"
 #include "support/macro_fixture.h"
-#include <math.h>
 #include "macro_impl.h"
 
 /* Points stand for the area of the body, at places inside their elements. */

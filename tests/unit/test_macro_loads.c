@@ -1,5 +1,4 @@
 /* Claims about the loads of the macroscale solver, with a material of known answers. Runs on any number of ranks. */
-#include "support/test.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"
 

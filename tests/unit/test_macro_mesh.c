@@ -1,5 +1,4 @@
 /* Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box. */
-#include "support/test.h"
 #include "support/gmsh_writer.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"

@@ -1,6 +1,5 @@
 /* The material law for other programs: SI units, states, threads, words of errors. */
 #include "support/test.h"
-#include <math.h>
 #include <pthread.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,10 +1,8 @@
 /* Merging databases: each question once, in the order of the files, and all of it or nothing. */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include "merge_fixture.h"
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 /* ---- what is kept ---- */
 

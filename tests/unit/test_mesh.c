@@ -1,5 +1,4 @@
 /* The mesh of the RVE: counts, areas, and how nodes are tied across faces and periods. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "element.h"
 

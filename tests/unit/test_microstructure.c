@@ -1,5 +1,4 @@
 /* The canonical description of a microstructure and its hash. */
-#include "support/test.h"
 #include "record_fixture.h"
 #include <database_internal.h>
 

@@ -1,5 +1,4 @@
 /* The mortar kernel: its derivatives against finite differences at random states, and rigid motions. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/mortar_fixture.h"
 

@@ -1,5 +1,4 @@
 /* The mortar kernel against the states of an independent prototype. */
-#include "support/test.h"
 #include <jansson.h>
 #include "support/rve_fixture.h"
 #include "support/mortar_fixture.h"

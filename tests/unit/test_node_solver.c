@@ -1,7 +1,5 @@
 /* Nodes solved from their parents: where they start, and that their responses depend on nothing else. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
-#include "support/contact_tissue.h"
 #include "grid.h"
 #include "node_solver.h"
 #include <string.h>

@@ -1,6 +1,5 @@
 /* Ticks, numbers, axes and the load axis of the pictures. */
 #include "support/test.h"
-#include <math.h>
 #include <string.h>
 #include "plot.h"
 

@@ -1,6 +1,5 @@
 /* Colours, views, outlines and painted fields of the pictures. */
 #include "support/test.h"
-#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* Pictures of whole files: each kind is drawn in each format, and what cannot be drawn is refused with the reason. */
 #include "support/test.h"
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

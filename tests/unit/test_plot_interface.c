@@ -1,6 +1,5 @@
 /* Gaps and contact pressure in pictures: where they are drawn, and in which colour. */
 #include "support/test.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

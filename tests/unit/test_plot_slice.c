@@ -1,8 +1,5 @@
 /* Slices through a table: what they hold is what the table answers, and nodes lie where their strains are. */
 #include "support/test.h"
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 #include "plot_slice.h"
 #include "support/error_message.h"

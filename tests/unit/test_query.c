@@ -1,5 +1,4 @@
 /* Answers from scattered records: derivatives and symmetry. */
-#include "support/test.h"
 #include "query_fixture.h"
 
 QUERY_TEST(a_record_answers_for_itself, MakeFilled())

@@ -1,5 +1,4 @@
 /* Answers from scattered records: how good they are, and when there is none. */
-#include "support/test.h"
 #include "query_fixture.h"
 
 static void AssertRefused(LamDatabase db, LamLoad load, PetscReal accuracy)

@@ -1,5 +1,4 @@
 /* Answers from scattered records of contact tissue. */
-#include "support/test.h"
 #include "query_fixture.h"
 
 static const PetscReal g = 0.2; /* cohesion of the records */

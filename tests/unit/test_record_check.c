@@ -1,6 +1,5 @@
 /* LamFileCheck: each damaged record and part is named, also behind the first. */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include <jansson.h>
 #include "record_bytes.h"
 

@@ -1,6 +1,5 @@
 /* Record files that are damaged, foreign, full or held by another writer: refused with the reason. */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

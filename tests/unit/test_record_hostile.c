@@ -1,6 +1,5 @@
 /* Files that hold what lamella never writes: refused by name before memory is taken or another file is opened. */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include "record_bytes.h"
 
 /* A sound file of two records, open for changes. */

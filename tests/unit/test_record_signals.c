@@ -1,6 +1,5 @@
 /* A signal that comes while a file is written, and in the middle of a system call, breaks nothing off. */
 #define _GNU_SOURCE
-#include "support/test.h"
 #include "record_fixture.h"
 #include <errno.h>
 #include <fcntl.h>

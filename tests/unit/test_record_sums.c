@@ -1,7 +1,6 @@
 /* Checksums beside the records: whatever is changed is noticed; files of earlier versions, which lack them, are read.
  */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include <sys/wait.h>
 #include "record_bytes.h"
 

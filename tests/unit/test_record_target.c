@@ -1,5 +1,4 @@
 /* What a new file may replace: an empty file, or one of the same kind. Links are followed. */
-#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <sys/stat.h>

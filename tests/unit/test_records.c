@@ -1,5 +1,4 @@
 /* Record files: what is committed stays and comes back; arrays and texts beside the records. */
-#include "support/test.h"
 #include "record_fixture.h"
 #include <hdf5.h>
 #include <signal.h>

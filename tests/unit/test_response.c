@@ -2,7 +2,6 @@
  * docs/reference/commands.md. */
 #include "support/test.h"
 #include <lamella/response.h>
-#include <math.h>
 #include <string.h>
 
 static const LamLoad shear = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};

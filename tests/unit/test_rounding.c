@@ -1,5 +1,4 @@
 /* The planner's model of rounding errors, and when it speaks. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include <string.h>
 #include "rounding.h"

@@ -1,6 +1,5 @@
 /* Of damaged files whose header HDF5 reads, the sound records are kept, and nothing else. */
 #define _GNU_SOURCE /* memmem */
-#include "support/test.h"
 #include "merge_fixture.h"
 
 enum { COUNT = 200 }; /* more than three chunks */

@@ -1,7 +1,6 @@
 /* What a scene becomes: nondimensional data, defaults, ramps. */
 #include "support/test.h"
 #include "unit/test_scene.h"
-#include <math.h>
 #include <string.h>
 
 #define SCENES LAMELLA_SOURCE_DIR "/tests/scenes/"

@@ -1,7 +1,6 @@
 /* The axes of a map: what a scene's block becomes. */
 #include "support/test.h"
 #include "unit/test_scene.h"
-#include <math.h>
 #include <string.h>
 
 #define SCENE RVE "  interface: {law: contact}\nload:\n  - {ramp: {to: [[1, 0.3], [0, 1]], steps: 3}}\n"

@@ -1,6 +1,5 @@
 /* When cells count as separated, from what two meshes say. */
 #include "support/test.h"
-#include <math.h>
 #include "separation.h"
 
 /* Both meshes alike; all face families carry the same traction, and of each this share is without contact. */

@@ -1,6 +1,5 @@
 /* lamella tradeoff: spread of times, which settings are the best, errors, and which settings a scene has. */
 #include "support/test.h"
-#include <math.h>
 #include <string.h>
 #include "tradeoff.h"
 

@@ -1,7 +1,6 @@
 /* Quantities with units. */
 #include "support/test.h"
 #include "test_scene_message.h"
-#include <math.h>
 
 static void AssertSI(const char text[], LamDimension dimension, PetscReal expected)
 {

@@ -1,6 +1,5 @@
 /* Wall law kernels against closed forms and against finite differences at random states. */
 #include "support/test.h"
-#include <math.h>
 #include "wall_law.h"
 #include "support/random_reals.h"
 

@@ -1,5 +1,4 @@
 /* The bonded cell against values of independent programs, same mesh and law (data/bonded.json). */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/reference_values.h"
 

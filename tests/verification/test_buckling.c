@@ -1,5 +1,4 @@
 /* Tissue buckles under biaxial compression; the buckled state is found and followed. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/buckling.h"
 

@@ -1,5 +1,4 @@
 /* Which cells still touch: clusters, percolation and fabric of states whose answer is known. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

@@ -1,5 +1,4 @@
 /* Pressure only where cells touch, no tension, no overlap on average, and equilibrium. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

@@ -1,5 +1,4 @@
 /* Hertz contact of a cylinder with a flat and with an equal cylinder, plane strain. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_blocks.h"
 

@@ -1,6 +1,5 @@
 /* Contact patch test: two blocks with non-matching distorted meshes, pressed together, deform as one homogeneous body.
  */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_blocks.h"
 

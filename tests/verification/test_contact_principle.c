@@ -1,6 +1,5 @@
 /* Effective-stress principle of contact tissue: turgor and cohesion act through their sum s; P + p J F^-T depends on it
    alone as the walls become incompressible. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

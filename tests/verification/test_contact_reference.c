@@ -1,5 +1,4 @@
 /* Contact tissue against values of an independent mortar program (data/contact.json). */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

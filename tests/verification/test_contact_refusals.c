@@ -1,5 +1,4 @@
 /* What is no answer is refused with its reason, and what is one is not. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 #include <string.h>

@@ -1,5 +1,4 @@
 /* Cells that nothing holds together: no stress, no stiffness, and a state that says so. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

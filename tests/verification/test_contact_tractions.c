@@ -4,7 +4,6 @@
   angles of the order of the strain, and pressure times angle compares with the differences between the tractions. With
   the current directions of the contact forces it holds under turgor, too. Errors are over the spread between the faces.
 */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 

@@ -1,5 +1,4 @@
 /* The step of an active set that differs in a few hats, from the factor of another one, is that of its own factor. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "solve.h"
 

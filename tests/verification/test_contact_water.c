@@ -2,10 +2,8 @@
   Cells in contact that hold or exchange their water: what a cache is worth where errors of its lumens become pressures,
   against direct solves of the same.
 */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include <lamella/cache.h>
-#include <lamella/lamella.h>
 #include <string.h>
 
 #define CELLS                                                                                                          \

@@ -1,9 +1,7 @@
 /* Features that a scene leaves off take no unknowns, no entries of the matrix, no factorisations, and change no digit.
  */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/bare_tissue.h"
-#include "support/contact_tissue.h"
 
 /* One solve with what it needs; the state is the solution. */
 typedef struct {

@@ -1,5 +1,4 @@
 /* Two cuboids in contact under generalised shear (Mihai, Safar & Wyatt, Section 4.1). */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/cuboids.h"
 

@@ -1,6 +1,5 @@
 /* Everything a response holds is a derivative of its energy: finite differences of bonded tissue at random states
    (F33 != 1 among them), of contact inside one contact set, of patches, and of cells that differ. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/uneven_cells.h"
 

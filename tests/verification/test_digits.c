@@ -1,9 +1,7 @@
 /* Rounding errors of shipped responses against the same discrete problem in extended precision. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/digits.h"
 #include "rounding.h"
-#include "support/random_reals.h"
 
 #define STRESS_DIGITS (500 * PETSC_MACHINE_EPSILON) /* of P, whatever the walls */
 

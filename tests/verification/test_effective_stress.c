@@ -1,5 +1,4 @@
 /* Effective-stress principle of bonded tissue: P + p J F^-T does not depend on p as the walls become incompressible. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/effective_stress.h"
 

@@ -1,5 +1,4 @@
 /* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "solve.h"
 

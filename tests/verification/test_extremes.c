@@ -1,5 +1,4 @@
 /* Large deformations are answered with stable states; impossible ones with a true reason. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/extreme_tissue.h"
 

@@ -1,5 +1,4 @@
 /* FE2 with the real RVE: a homogeneous macroscale deformation gives the response of one RVE. */
-#include "support/test.h"
 #include <string.h>
 #include "support/rve_fixture.h"
 

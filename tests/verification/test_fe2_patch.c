@@ -1,5 +1,4 @@
 /* FE2 against a direct patch of n x n cells: the difference falls with n. Larger blocks: test_fe2_patch_sizes. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/fe2_patch.h"
 

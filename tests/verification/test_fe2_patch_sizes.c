@@ -1,5 +1,4 @@
 /* slow: the difference between FE2 and a direct patch of n x n cells halves as n doubles, and nothing is left of it. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/fe2_patch.h"
 

@@ -1,9 +1,6 @@
 /* Cells that touch no one: states of the tissue itself against what is known of them. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
-#include "support/contact_tissue.h"
 #include "free_cell.h"
-#include "support/random_reals.h"
 
 #define KNOTS 17
 #define MPA (1.0 / TISSUE_STRESS)

@@ -1,5 +1,4 @@
 /* States that follow each other by increments of 1e-13 to 1e-4, and steps that are too large. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/load_increments.h"
 

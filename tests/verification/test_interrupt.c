@@ -1,5 +1,4 @@
 /* A solve that is interrupted, wherever that is, is given up and leaves nothing behind. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/mixed_control.h"
 #include <string.h>

@@ -1,6 +1,5 @@
 /* What the answer must not depend on: the observer, the lattice's symmetry, the number of cells, the path
  * (units: test_unit_systems). */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 #include "support/turned_response.h"

@@ -1,5 +1,4 @@
 /* Localisation of tissue and kinks of walls, against long waves of rows of cells, exact cases and finer meshes. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/localisation.h"
 

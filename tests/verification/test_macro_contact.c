@@ -5,7 +5,6 @@
   The pressure is half an ellipse: its second moment over x is F a^2 / 4. Nodal forces of quadratic elements keep second
   moments, so a is measured by them, much finer than the elements are.
 */
-#include "support/test.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"
 

@@ -1,5 +1,4 @@
 /* The macroscale solver against exact results: homogeneous deformation, and the balance of work and energy. */
-#include "support/test.h"
 #include "support/macro_fixture.h"
 
 /* Between rollers F = diag(1 + ux, 1 + uy) everywhere, P is the material's there, and reactions are stress times length

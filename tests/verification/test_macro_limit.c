@@ -1,5 +1,4 @@
 /* Load control past limit points: a clamped shallow arch under dead load snaps through. */
-#include "support/test.h"
 #include "support/gmsh_writer.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"

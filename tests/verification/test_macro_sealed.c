@@ -1,7 +1,6 @@
 /*
   Sealed lumens of the macroscale body, with a material of known answers: the mixed element and its Newton iteration.
 */
-#include "support/test.h"
 #include "support/macro_fixture.h"
 #include "support/mixed_element.h"
 

@@ -1,5 +1,4 @@
 /* Mixed control: the prescribed stress is reached, by the state that F alone would give, and what has none is told. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/mixed_control.h"
 #include <string.h>

@@ -1,5 +1,4 @@
 /* Large meshes start from the solution of a coarser one, and give what they give from elsewhere. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
 #include <string.h>

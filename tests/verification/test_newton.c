@@ -1,5 +1,4 @@
 /* Newton iterations from F = I in one go under turgor; bench_newton prints the whole table. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 
 #define TURGOR (0.02 / TISSUE_STRESS)

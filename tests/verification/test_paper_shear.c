@@ -1,7 +1,6 @@
 /* Generalised shear, Section 3 of Mihai, Safar & Wyatt: kernels and element against the closed forms of
  * docs/results/paper.md.
  */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/gap_between_walls.h"
 #include "support/paper_shear.h"

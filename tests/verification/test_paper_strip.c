@@ -1,7 +1,6 @@
 /* The cubic of generalised shear, Section 3 of Mihai, Safar & Wyatt, against a strip of wall elements
  * (docs/results/paper.md).
  */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/gap_between_walls.h"
 

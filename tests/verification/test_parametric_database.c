@@ -1,6 +1,5 @@
 /* Answers for walls between databases, against solves of those walls. */
 #include "support/test.h"
-#include <math.h>
 #include <string.h>
 #include "support/tissue.h"
 

@@ -1,5 +1,4 @@
 /* What the answer of a patch must not depend on, its limit of many cells, and the smallest patches. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/cell_patch.h"
 #include "support/turned_response.h"

@@ -1,9 +1,7 @@
 /* Patches between grips: P, tangent and couplings are derivatives of the energy, also where cells differ; turgor is
    cohesion; a single cell. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "separation.h"
-#include "support/contact_tissue.h"
 
 #define COLUMNS 3
 #define ROWS 2

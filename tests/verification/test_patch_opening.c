@@ -1,5 +1,4 @@
 /* slow: Fig. 9 of the source paper: empty cells come apart along the direction of the larger principal stretch. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/cell_patch.h"
 

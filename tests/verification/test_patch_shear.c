@@ -1,5 +1,4 @@
 /* Section 4.2 of the source paper on 3 x 3 cells: sheared between grips, empty and under turgor, by both strategies. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/cell_patch.h"
 

@@ -1,5 +1,4 @@
 /* Tissue that changes in time at a material point, against closed forms, fresh solves and balances. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include <lamella/study.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
 /* Sealed lumens: each keeps its water, all that a response holds is a derivative of one energy, and limits are those of
    prescribed turgor and of a full cell. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/sealed_cells.h"
 

@@ -1,6 +1,5 @@
 /* Sealed answers from prescribed turgor: those of the solve with sealed lumens, from whatever responder, and
    derivatives of one energy. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/sealed_cells.h"
 #include "support/synthetic_responder.h"

@@ -3,7 +3,6 @@
   which indicators are trusted. The figures of docs/results/verification.md with slack: small samples.
 */
 #include "support/test.h"
-#include <math.h>
 #include <lamella/lamella.h>
 #include "support/random_reals.h"
 

@@ -1,5 +1,4 @@
 /* Thin-walled honeycombs against beam theory. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/honeycomb.h"
 

@@ -3,7 +3,6 @@
   F = lambda 1 symmetry makes T_k normal and equal, sum_k n_k (x) n_k = 3/2 1, and the mean normal traction per current
   length is then the macroscopic Cauchy stress P11/lambda (F33 = 1).
 */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 
 TEST(EqualBiaxialTractionIsTheCauchyStress)

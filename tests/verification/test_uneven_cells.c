@@ -1,6 +1,5 @@
 /* Cells that differ (their derivatives: test_derivatives): repeated and shifted patterns, balance of forces, and the
  * weakest lamella. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include "support/uneven_cells.h"
 #include "support/turned_response.h"

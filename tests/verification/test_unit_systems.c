@@ -1,6 +1,5 @@
 /* Answers do not depend on the units in which a scene is written, nor, but for a factor, on the size and stiffness of
    the tissue, from picometres and gigapascals to kilometres and micropascals. */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 #include <stdio.h>
 

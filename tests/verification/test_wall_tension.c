@@ -6,7 +6,6 @@
   sigma the mean stress along the wall there, where it is largest, but for the corners, and uniform; T is the tension.
   At Sigma = 0 the double wall's 2 T h is sqrt(3) p l, l = 2 lambda/sqrt(3) the length of a face.
 */
-#include "support/test.h"
 #include "support/rve_fixture.h"
 
 #define ALONG 16 /* even: the middle of a face is a node */
