@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include "support/gap_between_walls.h"
 #include "support/paper_shear.h"
-#include "support/strip_problems.h"
+#include "support/strip.h"
 
 static PetscErrorCode Stresses(void)
 {

@@ -1,4 +1,5 @@
-# What the scripts here begin with; no test. A script sources it with its own arguments and then is in an empty folder:
+# What the scripts here and in ../mpi begin with; no test. A script sources it with its own arguments and then is in an
+# empty folder; those of ../mpi are skipped without mpirun:
 #   . "$(dirname "$0")/common.sh"
 #   $lamella, $source           the program and the folder of the sources
 #   fail WORDS                  tells what is wrong; the script goes on, and ends with status 1, as it does where its
@@ -14,6 +15,7 @@
 #   same FILE FILE [known|ordered]
 #                               databases whose records of the same keys are the same, but for times; with known the
 #                               second may have others besides, with ordered the order and the grid are the same, too
+[[ $0 != */mpi/* ]] || command -v mpirun >/dev/null || exit 77
 set -u
 lamella=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)

@@ -1,6 +1,5 @@
 # fe2 on two ranks: the same reactions, summary and zooms to 1e-8, direct and from caches, also of sealed tissue and of regions
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 set -e
 
 tissue >block.yaml <<'YAML'

@@ -1,6 +1,5 @@
 # lamella map under mpirun: the points do not depend on the number of ranks, except times.
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 set -e -o pipefail
 
 tissue turgor='pressure: 0 MPa' >s.yaml <<'YAML'

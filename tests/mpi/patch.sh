@@ -1,6 +1,5 @@
 # slow: a patch whose matrices two ranks factor: bonded the states of one rank, in contact their stresses within 0.1 %
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 
 # stress components and status of every state of a JSON file, in lines
 states() {

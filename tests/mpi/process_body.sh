@@ -1,6 +1,5 @@
 # process of a body on two ranks: the same states to 1e-6, with water and events, from a database and solved directly
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 set -e
 
 sed 's/elements: \[8, 8\]/elements: [3, 2]/' "$source/tests/scenes/storage.yaml" >body.yaml

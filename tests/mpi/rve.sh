@@ -1,6 +1,5 @@
 # rve on two ranks: rank 0 solves the chain; output, mistakes and exit status as in serial.
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 
 scene=$source/tests/scenes/shear-bonded.yaml
 "$lamella" rve "$scene" --json >one.txt || fail "serial: exit status $?"

@@ -1,6 +1,5 @@
 # A signal that reaches one rank alone ends the run on all of them, in the middle of a solve.
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 
 tissue interface='law: contact, cohesion: 0.001 MPa' turgor='mode: prescribed, pressure: 0.05 MPa' mesh='along: 24, through: 4' >fine.yaml <<'YAML'
   cells: [2, 2]

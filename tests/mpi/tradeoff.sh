@@ -1,6 +1,5 @@
 # lamella tradeoff under mpirun: on one rank as without it, on several it refuses, for they would share the processor.
 . "$(dirname "$0")/../cli/common.sh"
-command -v mpirun >/dev/null || exit 77
 set -e -o pipefail
 
 mpirun -n 1 "$lamella" tradeoff "$source/tests/scenes/uneven-cells.yaml" --budget 3 --repeats 1 --only tolerance --quiet >out.txt ||

@@ -2,6 +2,12 @@
 
 /* ---- numbers with their first and second derivatives ---- */
 
+enum { VARIABLES = 6 };
+
+typedef struct {
+  double v, g[VARIABLES], h[VARIABLES][VARIABLES];
+} Number;
+
 static Number Constant(double v)
 {
   return (Number){.v = v};
@@ -15,7 +21,8 @@ static Number Variable(double v, int k)
   return a;
 }
 
-Number Sum(Number a, double factor, Number b)
+/* a + factor b */
+static Number Sum(Number a, double factor, Number b)
 {
   a.v += factor * b.v;
   for (int i = 0; i < VARIABLES; i++) {
@@ -25,7 +32,7 @@ Number Sum(Number a, double factor, Number b)
   return a;
 }
 
-Number Times(Number a, Number b)
+static Number Times(Number a, Number b)
 {
   Number c = {.v = a.v * b.v};
 
@@ -59,7 +66,7 @@ static Number Log(Number a)
   return Of(a, log(a.v), 1 / a.v, -1 / (a.v * a.v));
 }
 
-Number Polynomial(int degree, const double c[], Number x)
+static Number Polynomial(int degree, const double c[], Number x)
 {
   double y[3] = {0};
 
@@ -108,7 +115,7 @@ static Number Pressed(Number y)
   return y.v < 1e-12 ? Of(y, y.v * y.v * (1 - y.v), 2 * y.v - 3 * y.v * y.v, 2 - 6 * y.v) : Constant(0);
 }
 
-Number Tau(Number s)
+static Number Tau(Number s)
 {
   return Log(Sum(Constant(1), 32 / TISSUE_SUCTION, s));
 }

@@ -21,25 +21,6 @@ typedef struct {
   double orientation;
 } AnalyticTissue;
 
-/* ---- numbers with their first and second derivatives ---- */
-
-enum { VARIABLES = 6 };
-
-typedef struct {
-  double v, g[VARIABLES], h[VARIABLES][VARIABLES];
-} Number;
-
-/* a + factor b */
-Number Sum(Number a, double factor, Number b);
-Number Times(Number a, Number b);
-Number Polynomial(int degree, const double c[], Number x);
-
-/* ---- the potential ---- */
-
-Number Tau(Number s);
-
-/* ---- the answer ---- */
-
 LamResponse TissueAnswer(const AnalyticTissue *tissue, const LamLoad *load);
 /* A responder's. Cells that are drawn apart alike in all directions float where they do not touch. */
 PetscErrorCode TissueRespond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],

@@ -7,7 +7,7 @@
 #ifndef LAM_SUPPORT_GAP_BETWEEN_WALLS_H
 #define LAM_SUPPORT_GAP_BETWEEN_WALLS_H
 
-#include "strip_problems.h"
+#include "strip.h"
 
 #define GAP_PSI 1.57079632679489662
 typedef struct {
