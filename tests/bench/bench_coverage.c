@@ -1,9 +1,13 @@
 /*
   How long `lamella build` takes to decide on a round: LamCoverageCompute on the first nodes of a database, and on all
-  of them; the prediction of what a node will cost. Prints figures, asserts nothing. bench_coverage [DATABASE.h5 ...]
+  of them; the prediction of what a node will cost. Prints figures, asserts nothing. bench_coverage [DATABASE.h5 ...];
+  without one, of a database that it builds.
 */
 #include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 #include <build.h>
+#include <lamella/study.h>
 #include "measure.h"
 
 static PetscErrorCode Cover(const LamScene *scene, LamDatabase file, PetscInt n)
@@ -81,10 +85,26 @@ static PetscErrorCode Run(const char path[])
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode BuildAndRun(void)
+{
+  char folder[] = "/tmp/bench_coverage.XXXXXX", path[64];
+  LamBuildResult result;
+
+  PetscFunctionBeginUser;
+  PetscCheck(mkdtemp(folder), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", folder);
+  snprintf(path, sizeof(path), "%s/block.h5", folder);
+  PetscCall(LamStudyBuild(LAMELLA_SOURCE_DIR "/tests/scenes/tissue-block.yaml", path, &(LamBuildOptions){0}, &result));
+  PetscCall(Run(path));
+  remove(path);
+  rmdir(folder);
+  PetscFunctionReturn(0);
+}
+
 int main(int argc, char **argv)
 {
-  if (argc < 2) fprintf(stderr, "usage: bench_coverage DATABASE.h5 ...\n");
+  if (PetscInitialize(NULL, NULL, NULL, NULL)) return 1;
+  if (argc < 2 && BuildAndRun()) return 1;
   for (int i = 1; i < argc; i++)
     if (Run(argv[i])) return 1;
-  return 0; /* tables need neither PetscInitialize nor MPI */
+  return PetscFinalize() ? 1 : 0;
 }
