@@ -1,9 +1,7 @@
-/*
-  Whether the planner keeps what it is asked: random tissues and loads that its model was not fitted to, solved on the
-  mesh that it takes for 10, 1 and 0.1 %, on all other meshes and on a fine one. Prints, for each accuracy, the share of
-  states whose error is below it, the time over that of the cheapest mesh that would have done, and the share of
-  estimates within a factor of 3 of the error. Usage: bench_accuracy [--contact] [--states N] [--seed N] [--list]
-*/
+/* Whether the planner keeps what it is asked: random tissues and loads that its model was not fitted to, solved on the
+   mesh that it takes for 10, 1 and 0.1 %, on all other meshes and on a fine one. Prints, for each accuracy, the share
+   of states whose error is below it, the time over that of the cheapest mesh that would have done, and the share of
+   estimates within a factor of 3 of the error. Usage: bench_accuracy [--contact] [--states N] [--seed N] [--list] */
 #include <math.h>
 #include <stdio.h>
 #include <lamella/lamella.h>

@@ -1,8 +1,6 @@
-/*
-  Digits that rounding leaves of P, energy, lumen and tangent where walls are stiff, thin or thick, loads small and
-  meshes large; prints figures, asserts nothing. Errors are relative, against the same discrete problem with 113 bits
-  (64 in the larger meshes). "large" adds a mesh of 1e5 elements, which takes minutes.
-*/
+/* Digits that rounding leaves of P, energy, lumen and tangent where walls are stiff, thin or thick, loads small and
+   meshes large; prints figures, asserts nothing. Errors are relative, against the same discrete problem with 113 bits
+   (64 in the larger meshes). "large" adds a mesh of 1e5 elements, which takes minutes. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,5 @@
-/*
-  What walls and lamella bear on finer and finer meshes, beside point values; onset load factors likewise; the cost of
-  the measures over that of a solve. Prints figures, asserts nothing.
-*/
+/* What walls and lamella bear on finer and finer meshes, beside point values; onset load factors likewise; the cost of
+   the measures over that of a solve. Prints figures, asserts nothing. */
 #include <petsctime.h>
 #include <stdio.h>
 #include "failure.h"

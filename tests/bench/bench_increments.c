@@ -1,8 +1,6 @@
-/*
-  What increments of 1e-13 to 0.1 of F, or of prescribed stress, cost, one after the other from an equilibrium, and how
-  far the increment of P is that of the tangent; then steps that are too large, from F = I, against the same way in
-  small ones. Prints figures, asserts nothing.
-*/
+/* What increments of 1e-13 to 0.1 of F, or of prescribed stress, cost, one after the other from an equilibrium, and how
+   far the increment of P is that of the tangent; then steps that are too large, from F = I, against the same way in
+   small ones. Prints figures, asserts nothing. */
 #include <stdio.h>
 #include "support/load_increments.h"
 #include "support/tissue.h"

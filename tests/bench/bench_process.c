@@ -1,8 +1,6 @@
-/*
-  Work and precision of the integration of a process (tests/scenes/ripening.yaml, a week at one material point) over its
-  tolerance: steps, questions, time, error at the end. `bench_process` solves directly; `bench_process DB.h5` asks a
-  database that `lamella process -d DB.h5` has filled, warm.
-*/
+/* Work and precision of the integration of a process (tests/scenes/ripening.yaml, a week at one material point) over
+   its tolerance: steps, questions, time, error at the end. `bench_process` solves directly; `bench_process DB.h5` asks
+   a database that `lamella process -d DB.h5` has filled, warm. */
 #include <lamella/lamella.h>
 #include "clock.h"
 #include "support/tissue.h"

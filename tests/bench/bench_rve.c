@@ -8,11 +8,6 @@
 
 #define REPEATS 41
 
-static double Median(double *t)
-{
-  return Quantile(t, REPEATS, 0.5);
-}
-
 typedef struct {
   double state, factor, solve, assemble, homogenise, traction;
 } Times;
@@ -43,11 +38,11 @@ static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
     PetscCall(PetscTime(&a[5]));
     for (PetscInt i = 0; i < 5; ++i) t[i][k] = a[i + 1] - a[i];
   }
-  median->assemble = Median(t[0]);
-  median->factor = Median(t[1]);
-  median->solve = Median(t[2]);
-  median->homogenise = Median(t[3]);
-  median->traction = Median(t[4]);
+  median->assemble = Quantile(t[0], REPEATS, 0.5);
+  median->factor = Quantile(t[1], REPEATS, 0.5);
+  median->solve = Quantile(t[2], REPEATS, 0.5);
+  median->homogenise = Quantile(t[3], REPEATS, 0.5);
+  median->traction = Quantile(t[4], REPEATS, 0.5);
   PetscFunctionReturn(0);
 }
 
@@ -70,7 +65,7 @@ static PetscErrorCode Run(PetscInt along, PetscInt through)
     PetscCall(LamRVESolve(rve, &load, state, &response));
     if (k >= 0) t[k] = response.seconds;
   }
-  times.state = Median(t);
+  times.state = Quantile(t, REPEATS, 0.5);
   PetscCall(TimeParts(rve, &load, &times));
   printf("%8d %8d %5d %8.2f %9.2f %7.2f %9.2f %11.2f %9.2f %12.2f\n", (int)(6 * along * through),
          (int)response.unknowns, (int)response.newton_iterations, 1e3 * times.state, 1e3 * times.factor,

@@ -1,7 +1,5 @@
-/*
-  A time of day that somebody sets again and again: loaded by LD_PRELOAD, it jumps back and forth by hours from call to
-  call. The monotonic clocks stay as they are.
-*/
+/* A time of day that somebody sets again and again: loaded by LD_PRELOAD, it jumps back and forth by hours from call to
+   call. The monotonic clocks stay as they are. */
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include <dlfcn.h>
 #include <sys/time.h>

@@ -1,7 +1,5 @@
-/*
-  The body of extended_quad.c and extended_long.c, which say what a real number is. PETSc's headers come first, so that
-  its own functions keep their types; none of those called takes or gives a real number.
-*/
+/* The body of extended_quad.c and extended_long.c, which say what a real number is. PETSc's headers come first, so that
+   its own functions keep their types; none of those called takes or gives a real number. */
 #include "extended.h"
 #include <petscmat.h>
 #include <petsctime.h>

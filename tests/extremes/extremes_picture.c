@@ -1,7 +1,5 @@
-/*
-  The pairs of a map as a table of all quantities by all: below the diagonal bonded tissue, above it contact. In each
-  square the four corners of two quantities, the low end left and above, coloured by the verdict.
-*/
+/* The pairs of a map as a table of all quantities by all: below the diagonal bonded tissue, above it contact. In each
+   square the four corners of two quantities, the low end left and above, coloured by the verdict. */
 #include "extremes_picture.h"
 #include <stdio.h>
 

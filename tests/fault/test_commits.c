@@ -1,9 +1,7 @@
-/*
-  Every instant of commits: the calls that a writer makes on its file are logged and played back one by one, and within
-  one (between pages), on a copy. What a kill would leave there must hold all that was committed before, unchanged, and
-  go on. Between two syncs the system may bring writes to the disk in any order, sector by sector: any part of them must
-  do, too, which stands for a loss of power.
-*/
+/* Every instant of commits: the calls that a writer makes on its file are logged and played back one by one, and within
+   one (between pages), on a copy. What a kill would leave there must hold all that was committed before, unchanged, and
+   go on. Between two syncs the system may bring writes to the disk in any order, sector by sector: any part of them
+   must do, too, which stands for a loss of power. */
 #include "../unit/record_fixture.h"
 #include <errno.h>
 #include <fcntl.h>

@@ -22,10 +22,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
   } while (0)
 void FuzzFail(const char file[], int line, const char format[], ...) __attribute__((noreturn, format(printf, 3, 4)));
 
-/*
-  Errors are what is provoked: their words are kept, not printed. An input that shows something is kept where the
-  program was started, also where that was found in the folder below.
-*/
+/* Errors are what is provoked: their words are kept, not printed. An input that shows something is kept where the
+   program was started, also where that was found in the folder below. */
 void FuzzStart(int *argc, char ***argv);
 const char *FuzzMessage(void); /* of the last error */
 

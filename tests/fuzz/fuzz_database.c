@@ -1,7 +1,5 @@
-/*
-  Databases that someone has changed: opened, described, checked, asked, merged and salvaged as the commands do it. Each
-  is answered or refused in words, and leaves neither memory nor anything of HDF5 open.
-*/
+/* Databases that someone has changed: opened, described, checked, asked, merged and salvaged as the commands do it.
+   Each is answered or refused in words, and leaves neither memory nor anything of HDF5 open. */
 #include "hdf5_edits.h"
 #include <hdf5.h>
 #include <lamella/database.h>

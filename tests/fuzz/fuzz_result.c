@@ -1,7 +1,5 @@
-/*
-  Files of `rve`, `fe2` and `map` that someone has changed, as `info` and `plot` read them: described, drawn, or refused
-  in words.
-*/
+/* Files of `rve`, `fe2` and `map` that someone has changed, as `info` and `plot` read them: described, drawn, or
+   refused in words. */
 #include "app.h"
 #include "hdf5_edits.h"
 #include "plot.h"

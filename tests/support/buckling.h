@@ -1,9 +1,7 @@
-/*
-  Buckling of tissue under biaxial compression F = (1 - e) 1, and of rows of cells along any ramp: what the test asserts
-  and the bench program prints. The affine start has all symmetries of the cell and plain Newton steps keep them, so the
-  symmetric solution is found also where it is unstable; the inertia of its tangent tells which side of the onset it is
-  on.
-*/
+/* Buckling of tissue under biaxial compression F = (1 - e) 1, and of rows of cells along any ramp: what the test
+   asserts and the bench program prints. The affine start has all symmetries of the cell and plain Newton steps keep
+   them, so the symmetric solution is found also where it is unstable; the inertia of its tangent tells which side of
+   the onset it is on. */
 #ifndef LAM_SUPPORT_BUCKLING_H
 #define LAM_SUPPORT_BUCKLING_H
 

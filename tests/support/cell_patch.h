@@ -1,8 +1,6 @@
-/*
-  Figures of patches between grips that the tests assert and the bench program prints: the block of Section 4.2 of the
-  source paper in simple shear, by both strategies, and the directions in which its cells come apart. Turgor and
-  cohesion in MPa, angles in degrees.
-*/
+/* Figures of patches between grips that the tests assert and the bench program prints: the block of Section 4.2 of the
+   source paper in simple shear, by both strategies, and the directions in which its cells come apart. Turgor and
+   cohesion in MPa, angles in degrees. */
 #ifndef LAM_SUPPORT_CELL_PATCH_H
 #define LAM_SUPPORT_CELL_PATCH_H
 

@@ -1,8 +1,6 @@
-/*
-  Figures of contact tissue that the tests assert and the bench program prints: the independent values of
-  data/contact.json, complementarity and penetration, tractions that statics alone fixes, and the effective-stress
-  principle.
-*/
+/* Figures of contact tissue that the tests assert and the bench program prints: the independent values of
+   data/contact.json, complementarity and penetration, tractions that statics alone fixes, and the effective-stress
+   principle. */
 #ifndef LAM_SUPPORT_CONTACT_CHECKS_H
 #define LAM_SUPPORT_CONTACT_CHECKS_H
 
@@ -63,10 +61,8 @@ PetscErrorCode ComputeStaticTractions(double strain, double turgor, double cohes
 
 #define PRINCIPLE_PAIRS 3
 #define PRINCIPLE_LOADS 3
-/*
-  Turgor and cohesion act through their sum s = p + g: P + p J F^-T at equal s, for pairs (p, g). Returns the largest
-  difference of a component from that of the first pair, over s. bulk_modulus in C1.
-*/
+/* Turgor and cohesion act through their sum s = p + g: P + p J F^-T at equal s, for pairs (p, g). Returns the largest
+   difference of a component from that of the first pair, over s. bulk_modulus in C1. */
 PetscErrorCode ComputePrinciple(double bulk_modulus, PetscInt along, PetscInt through,
                                 double difference[PRINCIPLE_LOADS], int *converged);
 

@@ -1,8 +1,6 @@
-/*
-  A state and the finite differences of its energy, stress, dPsi/dp and dPsi/dg in each component of (F, p, g): what
-  tests assert and the bench program prints. Fourth-order central differences of warm-started solves. The potential of
-  contact tissue is smooth while the contact set stays: the states that change theirs are counted.
-*/
+/* A state and the finite differences of its energy, stress, dPsi/dp and dPsi/dg in each component of (F, p, g): what
+   tests assert and the bench program prints. Fourth-order central differences of warm-started solves. The potential of
+   contact tissue is smooth while the contact set stays: the states that change theirs are counted. */
 #ifndef LAM_SUPPORT_CONTACT_TISSUE_H
 #define LAM_SUPPORT_CONTACT_TISSUE_H
 

@@ -1,9 +1,7 @@
-/*
-  The gap k X2 - (3 k / 4) X2^(4/3) between two walls side by side, fibres along X2, as Section 3 of Mihai, Safar &
-  Wyatt has it, against equilibrium and the contact conditions (docs/results/paper.md): the left wall in generalised
-  shear with sigma12 = a X2, the right one in simple shear k, touching at X2 = 0. a is chosen so that both shears are k
-  at X2 = 1.
-*/
+/* The gap k X2 - (3 k / 4) X2^(4/3) between two walls side by side, fibres along X2, as Section 3 of Mihai, Safar &
+   Wyatt has it, against equilibrium and the contact conditions (docs/results/paper.md): the left wall in generalised
+   shear with sigma12 = a X2, the right one in simple shear k, touching at X2 = 0. a is chosen so that both shears are k
+   at X2 = 1. */
 #ifndef LAM_SUPPORT_GAP_BETWEEN_WALLS_H
 #define LAM_SUPPORT_GAP_BETWEEN_WALLS_H
 

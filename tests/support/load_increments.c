@@ -31,12 +31,8 @@ PetscErrorCode IncrementCreate(IncrementKind kind, IncrementTissue *t)
   *t = (IncrementTissue){.kind = kind};
   if (IncrementIsContact(kind)) micro.interface = LAM_INTERFACE_CONTACT;
   if (IncrementIsContact(kind)) load.cohesion = 0.05;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &t->rve));
-  PetscCall(LamRVESetMicrostructure(t->rve, &micro));
-  PetscCall(LamRVESetSealable(t->rve, sealed));
-  PetscCall(LamRVESetUp(t->rve));
+  PetscCall(NewSealableTissue(&micro, sealed, &t->rve, &t->state));
   PetscCall(LamRVEStateCreate(t->rve, &t->base));
-  PetscCall(LamRVEStateCreate(t->rve, &t->state));
   if (sealed) PetscCall(IncrementSeal(t, &load));
   PetscCall(LamRVESolve(t->rve, &load, t->base, &t->at));
   if (mixed) { /* from here on the normal stresses are prescribed */

@@ -1,7 +1,5 @@
-/*
-  Figures of mixed control that the tests assert and the bench program prints: how well the prescribed stress is
-  reached, and what it costs against the same state at the F that it has.
-*/
+/* Figures of mixed control that the tests assert and the bench program prints: how well the prescribed stress is
+   reached, and what it costs against the same state at the F that it has. */
 #ifndef LAM_SUPPORT_MIXED_CONTROL_H
 #define LAM_SUPPORT_MIXED_CONTROL_H
 

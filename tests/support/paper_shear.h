@@ -1,7 +1,5 @@
-/*
-  Prescribed generalised shear: the wall-law kernels and the element against the closed forms of shear_exact.h, at
-  random moduli, fibre angles and shears. Errors are relative to 1 + the largest stress.
-*/
+/* Prescribed generalised shear: the wall-law kernels and the element against the closed forms of shear_exact.h, at
+   random moduli, fibre angles and shears. Errors are relative to 1 + the largest stress. */
 #ifndef LAM_SUPPORT_PAPER_SHEAR_H
 #define LAM_SUPPORT_PAPER_SHEAR_H
 

@@ -1,7 +1,5 @@
-/*
-  The independent values of the bonded cell (data/bonded.json) beside this program's: what the test asserts and the
-  bench program prints. Errors are relative to the largest component.
-*/
+/* The independent values of the bonded cell (data/bonded.json) beside this program's: what the test asserts and the
+   bench program prints. Errors are relative to the largest component. */
 #ifndef LAM_SUPPORT_REFERENCE_VALUES_H
 #define LAM_SUPPORT_REFERENCE_VALUES_H
 

@@ -14,10 +14,7 @@ LamRVE NewSealable(const LamMicrostructure *micro)
 {
   LamRVE rve;
 
-  CHECK(LamRVECreate(PETSC_COMM_SELF, &rve));
-  CHECK(LamRVESetMicrostructure(rve, micro));
-  CHECK(LamRVESetSealable(rve, PETSC_TRUE));
-  CHECK(LamRVESetUp(rve));
+  CHECK(NewSealableTissue(micro, PETSC_TRUE, &rve, NULL));
   return rve;
 }
 

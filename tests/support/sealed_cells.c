@@ -8,12 +8,8 @@ PetscErrorCode SealedCreate(const LamMicrostructure *micro, const LamLoad *load,
   PetscFunctionBeginUser;
   s->bulk_modulus = bulk_modulus;
   for (int i = 0; i < 9; i++) start.F[i] = i % 4 == 0;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &s->rve));
-  PetscCall(LamRVESetMicrostructure(s->rve, micro));
-  PetscCall(LamRVESetSealable(s->rve, PETSC_TRUE));
-  PetscCall(LamRVESetUp(s->rve));
+  PetscCall(NewSealableTissue(micro, PETSC_TRUE, &s->rve, &s->state));
   PetscCall(LamRVEStateCreate(s->rve, &s->start));
-  PetscCall(LamRVEStateCreate(s->rve, &s->state));
   PetscCall(LamRVESolve(s->rve, &start, s->start, &s->response));
   PetscCall(LamRVEGetLumens(s->rve, s->start, s->water));
   PetscCall(LamRVESeal(s->rve, bulk_modulus, s->water));

@@ -23,13 +23,6 @@ static double CycleFace(const AnalyticTable *t, const LamLoad *load, int k, int 
   return (at.x[k] - a[0] - t->grid->origin) / t->grid->step * LAM_ROOT / CYCLE_FINEST;
 }
 
-static int CompareDoubles(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-
-  return (x > y) - (x < y);
-}
-
 /* Where the straight way between two loads crosses faces, sorted, with 0 and 1. */
 static int CycleCrossings(const AnalyticTable *t, const LamLoad ends[2], double at[CYCLE_CROSSINGS])
 {
@@ -53,7 +46,7 @@ static int CycleCrossings(const AnalyticTable *t, const LamLoad ends[2], double 
       }
       at[n++] = 0.5 * (low + high);
     }
-  qsort(at, (size_t)n, sizeof(*at), CompareDoubles);
+  CHECK(PetscSortReal(n, at));
   return n;
 }
 

@@ -1,10 +1,10 @@
 #include "table_fixture.h"
 
-/* Solves what the table lacks to answer `load`, until it does or nothing helps. */
-static PetscErrorCode TableFixtureRefine(LamDatabase database, LamRecordWriter writer, const Synthetic *material,
-                                         const LamLoad *load, PetscReal accuracy)
+PetscErrorCode RefineTable(LamDatabase database, LamResponder solver, const LamLoad *load, PetscReal accuracy)
 {
   PetscInt64 keys[LAM_MAX_NEEDS];
+  LamResponse nodes[LAM_MAX_NEEDS];
+  const PetscInt no_point = -1;
   PetscInt n = 1;
 
   PetscFunctionBeginUser;
@@ -17,15 +17,12 @@ static PetscErrorCode TableFixtureRefine(LamDatabase database, LamRecordWriter w
     PetscCall(LamTableNeeds(table, load, accuracy, &n, keys));
     PetscCall(LamTableDestroy(&table));
     for (PetscInt k = 0; k < n; k++) {
-      LamResponse response;
       LamLoad node;
 
       PetscCall(LamGridNodeLoad(grid, keys[k], &node));
-      PetscCall(LamResponseInit(&node, &response));
-      SyntheticEvaluate(material, &node, &response);
-      PetscCall(LamRecordWriterCommit(writer, 1, &keys[k], &response));
-      PetscCall(LamDatabaseAdd(database, 1, &keys[k], &response));
+      PetscCall(LamResponderRespond(solver, 1, &node, &no_point, &nodes[k]));
     }
+    PetscCall(LamDatabaseAdd(database, n, keys, nodes));
   }
   PetscFunctionReturn(0);
 }
@@ -33,9 +30,14 @@ static PetscErrorCode TableFixtureRefine(LamDatabase database, LamRecordWriter w
 PetscErrorCode TableFixtureWrite(const char path[], const LamScene *scene, const Synthetic *material, PetscInt n,
                                  const LamLoad loads[], PetscReal accuracy)
 {
+  const LamResponse *records;
+  const PetscInt64 *keys;
   LamRecordWriter writer;
+  LamResponder solver;
   LamDatabase database;
+  Synthetic *made;
   LamGrid grid;
+  PetscInt count;
   char *text;
 
   PetscFunctionBeginUser;
@@ -46,7 +48,14 @@ PetscErrorCode TableFixtureWrite(const char path[], const LamScene *scene, const
   PetscCall(PetscFree(text));
   PetscCall(LamDatabaseCreateEmpty(scene, &database));
   PetscCall(LamDatabaseSetGrid(database, &grid));
-  for (PetscInt i = 0; i < n; i++) PetscCall(TableFixtureRefine(database, writer, material, &loads[i], accuracy));
+  PetscCall(SyntheticCreate(0, &solver, &made));
+  made->mu = material->mu;
+  made->lambda = material->lambda;
+  made->phi = material->phi;
+  for (PetscInt i = 0; i < n; i++) PetscCall(RefineTable(database, solver, &loads[i], accuracy));
+  PetscCall(LamResponderDestroy(&solver));
+  PetscCall(LamDatabaseGetRecords(database, &count, &records, &keys));
+  PetscCall(LamRecordWriterCommit(writer, count, keys, records));
   PetscCall(LamRecordWriterClose(&writer));
   PetscCall(LamDatabaseClose(&database));
   PetscFunctionReturn(0);

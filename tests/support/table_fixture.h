@@ -6,6 +6,8 @@
 #include <lamella/database.h>
 #include <stdio.h>
 
+/* Solves what the table lacks to respond to the load, until it does or nothing helps. */
+PetscErrorCode RefineTable(LamDatabase database, LamResponder solver, const LamLoad *load, PetscReal accuracy);
 /* A database of bonded tissue that answers these loads. */
 PetscErrorCode TableFixtureWrite(const char path[], const LamScene *scene, const Synthetic *material, PetscInt n,
                                  const LamLoad loads[], PetscReal accuracy);

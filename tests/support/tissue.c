@@ -20,9 +20,15 @@ LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
 
 PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state)
 {
+  return NewSealableTissue(micro, PETSC_FALSE, rve, state);
+}
+
+PetscErrorCode NewSealableTissue(const LamMicrostructure *micro, PetscBool sealable, LamRVE *rve, LamRVEState *state)
+{
   PetscFunctionBeginUser;
   PetscCall(LamRVECreate(PETSC_COMM_SELF, rve));
   PetscCall(LamRVESetMicrostructure(*rve, micro));
+  PetscCall(LamRVESetSealable(*rve, sealable));
   PetscCall(LamRVESetUp(*rve));
   if (state) PetscCall(LamRVEStateCreate(*rve, state));
   PetscFunctionReturn(0);

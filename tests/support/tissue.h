@@ -8,8 +8,9 @@
 /* The default tissue (C1 = 0.1, C2 = 0.01, C4 = 1 MPa) with one cell and the coarse mesh. */
 LamMicrostructure DefaultTissue(void);
 LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor);
-/* An RVE that is set up, and a state of it (or NULL). */
+/* An RVE that is set up, and a state of it (or NULL); with lumens that may be sealed. */
 PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state);
+PetscErrorCode NewSealableTissue(const LamMicrostructure *micro, PetscBool sealable, LamRVE *rve, LamRVEState *state);
 PetscErrorCode DestroyTissue(LamRVE *rve, LamRVEState *state);
 /* Solves one load with a new RVE, from F = I in one go. */
 PetscErrorCode SolveOnce(const LamMicrostructure *micro, const LamLoad *load, LamResponse *response);

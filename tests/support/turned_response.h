@@ -1,5 +1,4 @@
-/* Comparison of responses whose reference or current configurations are turned against each other. Include after
-   cmocka.h. */
+/* Comparison of responses whose reference or current configurations are turned against each other. */
 #ifndef LAM_SUPPORT_TURNED_RESPONSE_H
 #define LAM_SUPPORT_TURNED_RESPONSE_H
 

@@ -1,5 +1,4 @@
-/* A known potential with the symmetry of the hexagon, its exact responses, and databases of them. Include after
- * cmocka.h. */
+/* A known potential with the symmetry of the hexagon, its exact responses, and databases of them. */
 #ifndef LAM_QUERY_FIXTURE_H
 #define LAM_QUERY_FIXTURE_H
 

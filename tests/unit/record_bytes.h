@@ -1,7 +1,5 @@
-/*
-  Files that are changed behind the library's back: bytes, attributes, and records of another type. The includer defines
-  _GNU_SOURCE, for memmem.
-*/
+/* Files that are changed behind the library's back: bytes, attributes, and records of another type. The includer
+   defines _GNU_SOURCE, for memmem. */
 #ifndef LAM_RECORD_BYTES_H
 #define LAM_RECORD_BYTES_H
 

@@ -50,10 +50,8 @@ static void ReadExpected(const json_t *state, Values *values)
     for (int j = 0; j < UNKNOWNS; j++) values->hessian[UNKNOWNS * i + j] = At(json_array_get(rows, (size_t)i), j);
 }
 
-/*
-  The derivative of the dofs in an unknown: itself, or for F_ij the master nodes' shift by F L, dy_i = L_j. Calls
-  with dof index d give the weight of unknown u.
-*/
+/* The derivative of the dofs in an unknown: itself, or for F_ij the master nodes' shift by F L, dy_i = L_j. Calls with
+   dof index d give the weight of unknown u. */
 static double DofOfUnknown(int d, int u, const double L[2])
 {
   if (u < CHAIN_DOFS) return d == u;

@@ -1,11 +1,6 @@
-/*
-  Every scene of tests/scenes/bad.txt, whose head explains the format, and bad-blocks.txt is refused with the message
-  given there. One test for each scene.
-*/
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+/* Every scene of tests/scenes/bad.txt, whose head explains the format, and bad-blocks.txt is refused with the message
+   given there. One test for each scene. */
+#include "support/test.h"
 #include "test_scene_message.h"
 #include <stdlib.h>
 

@@ -1,7 +1,5 @@
-/*
-  Mixed control in scenes: which components are prescribed, ramps of stress, ramps that go on from a state whose F is
-  not known when the scene is read.
-*/
+/* Mixed control in scenes: which components are prescribed, ramps of stress, ramps that go on from a state whose F is
+   not known when the scene is read. */
 #include "support/test.h"
 #include "unit/test_scene.h"
 

@@ -1,8 +1,6 @@
-/*
-  Chance in scenes: the same everywhere, and of the distribution that is asked for. Seeds are fixed, so nothing here
-  fails by chance; the bounds are four standard errors of 64 x 64 cells, where cells are correlated of the areas that
-  one value stands for.
-*/
+/* Chance in scenes: the same everywhere, and of the distribution that is asked for. Seeds are fixed, so nothing here
+   fails by chance; the bounds are four standard errors of 64 x 64 cells, where cells are correlated of the areas that
+   one value stands for. */
 #include "support/test.h"
 #include <lamella/lattice.h>
 #include <scene_keys.h>

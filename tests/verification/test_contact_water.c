@@ -1,7 +1,5 @@
-/*
-  Cells in contact that hold or exchange their water: what a cache is worth where errors of its lumens become pressures,
-  against direct solves of the same.
-*/
+/* Cells in contact that hold or exchange their water: what a cache is worth where errors of its lumens become
+   pressures, against direct solves of the same. */
 #include "support/rve_fixture.h"
 #include <lamella/cache.h>
 #include <string.h>

@@ -1,7 +1,5 @@
-/*
-  Where tissue fails along a load: on finer meshes the same, in step with what is known of buckling and of turgor, and
-  independent of the steps in which the load is given.
-*/
+/* Where tissue fails along a load: on finer meshes the same, in step with what is known of buckling and of turgor, and
+   independent of the steps in which the load is given. */
 #include "support/rve_fixture.h"
 #include "support/failing_tissue.h"
 

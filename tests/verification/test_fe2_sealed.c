@@ -1,7 +1,5 @@
-/*
-  FE2 with the real RVE, turgor prescribed and sealed: patch test, Cook's membrane, and the mixed element against one
-  sealed RVE.
-*/
+/* FE2 with the real RVE, turgor prescribed and sealed: patch test, Cook's membrane, and the mixed element against one
+   sealed RVE. */
 #include "support/rve_fixture.h"
 #include "support/mixed_element.h"
 

@@ -1,6 +1,7 @@
 /* Answers for walls between databases, against solves of those walls. */
 #include "support/test.h"
 #include <string.h>
+#include "support/table_fixture.h"
 #include "support/tissue.h"
 
 enum { KNOTS = 4, STATES = 6 };
@@ -16,30 +17,16 @@ static const LamLoad loads[STATES] = {
 static void Build(const LamMicrostructure *micro, LamDatabase *db)
 {
   LamScene scene = {.micro = *micro, .accuracy = ASKED, .scales = {75e-6, 0.11e6, 0}, .turgor = 0.2};
-  PetscInt64 keys[LAM_MAX_NEEDS];
+  OWNED(LamRVE, LamRVEDestroy) rve;
+  OWNED(LamResponder, LamResponderDestroy) solver;
   LamGrid grid;
-  PetscInt n = 1;
 
+  assert_int_equal(NewTissue(micro, &rve, NULL), 0);
+  assert_int_equal(LamRVEResponderCreate(rve, 0, &solver), 0);
   assert_int_equal(LamGridCreate(&scene, NULL, &grid), 0);
   assert_int_equal(LamDatabaseCreateEmpty(&scene, db), 0);
   assert_int_equal(LamDatabaseSetGrid(*db, &grid), 0);
-  assert_int_equal(LamDatabaseGetGrid(*db, &grid), 0);
-  for (int s = 0; s < STATES; s++)
-    for (int round = 0; round < 8; round++) {
-      LamResponse nodes[LAM_MAX_NEEDS];
-      OWNED(LamTable, LamTableDestroy) table;
-
-      assert_int_equal(LamDatabaseGetTable(*db, &table), 0);
-      assert_int_equal(LamTableNeeds(table, &loads[s], ASKED / 5, &n, keys), 0);
-      if (!n) break;
-      for (PetscInt k = 0; k < n; k++) {
-        LamLoad load;
-
-        assert_int_equal(LamGridNodeLoad(grid, keys[k], &load), 0);
-        assert_int_equal(SolveOnce(micro, &load, &nodes[k]), 0);
-      }
-      assert_int_equal(LamDatabaseAdd(*db, n, keys, nodes), 0);
-    }
+  for (int s = 0; s < STATES; s++) assert_int_equal(RefineTable(*db, solver, &loads[s], ASKED / 5), 0);
 }
 
 /* The family first: it borrows the databases. */

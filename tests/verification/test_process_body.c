@@ -1,7 +1,5 @@
-/*
-  Bodies that change in time: uniform ones against one material point of the same tissue, and others against closed
-  forms, balances and fresh runs.
-*/
+/* Bodies that change in time: uniform ones against one material point of the same tissue, and others against closed
+   forms, balances and fresh runs. */
 #include "support/test.h"
 #include <lamella/lamella.h>
 #include "support/synthetic_responder.h"

@@ -1,10 +1,10 @@
-/*
-  What a table says of its own answers, against fresh solves of states that it has not seen: the error estimate, and
-  which indicators are trusted. The figures of docs/results/verification.md with slack: small samples.
-*/
+/* What a table says of its own answers, against fresh solves of states that it has not seen: the error estimate, and
+   which indicators are trusted. The figures of docs/results/verification.md with slack: small samples. */
 #include "support/test.h"
 #include <lamella/lamella.h>
 #include "support/random_reals.h"
+#include "support/table_fixture.h"
+#include "support/tissue.h"
 
 #define BONDED_STATES 60
 #define CONTACT_STATES 40
@@ -26,13 +26,9 @@ static const char contact_scene[] = TISSUE "  interface: {law: contact}\n"
                                            "  turgor: {min: 0.02 MPa, max: 0.04 MPa}\n";
 
 typedef struct {
-  LamRVE rve;
-  LamRVEState state;
-} Solver;
-
-typedef struct {
   LamScene *scene;
-  Solver solver;
+  LamRVE rve;
+  LamResponder solver;
   LamDatabase database;
 } Tissue;
 
@@ -41,35 +37,25 @@ typedef struct {
   LamResponse answer, solve;
 } Pair;
 
-static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[], LamResponse r[])
+static LamResponse Solve(const Tissue *t, const LamLoad *load)
 {
-  Solver *solver = ctx;
+  LamResponse r;
 
-  (void)points;
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(LamRVEStateReset(solver->rve, solver->state));
-    PetscCall(LamRVESolve(solver->rve, &loads[i], solver->state, &r[i]));
-  }
-  PetscFunctionReturn(0);
+  assert_int_equal(LamResponderRespond(t->solver, 1, load, NULL, &r), 0);
+  return r;
 }
 
 static void Start(const char scene[], Tissue *t)
 {
-  const LamResponderFunctions functions = {.respond = Respond};
-  OWNED(LamResponder, LamResponderDestroy) responder;
   const LamResponse *records;
   const PetscInt64 *keys;
   LamGrid grid;
   PetscInt n;
 
   assert_int_equal(LamSceneReadText("test_table_estimate", scene, &t->scene), 0);
-  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &t->solver.rve), 0);
-  assert_int_equal(LamRVESetMicrostructure(t->solver.rve, &t->scene->micro), 0);
-  assert_int_equal(LamRVESetUp(t->solver.rve), 0);
-  assert_int_equal(LamRVEStateCreate(t->solver.rve, &t->solver.state), 0);
-  assert_int_equal(LamResponderCreate(&functions, &t->solver, NULL, &responder), 0);
-  assert_int_equal(LamGridCreate(t->scene, responder, &grid), 0);
+  assert_int_equal(NewTissue(&t->scene->micro, &t->rve, NULL), 0);
+  assert_int_equal(LamRVEResponderCreate(t->rve, 0, &t->solver), 0);
+  assert_int_equal(LamGridCreate(t->scene, t->solver, &grid), 0);
   assert_int_equal(LamDatabaseCreateEmpty(t->scene, &t->database), 0);
   assert_int_equal(LamGridGetRecords(grid, &n, &keys, &records), 0);
   assert_int_equal(LamDatabaseAdd(t->database, n, keys, records), 0);
@@ -79,33 +65,9 @@ static void Start(const char scene[], Tissue *t)
 static void Finish(Tissue *t)
 {
   assert_int_equal(LamDatabaseClose(&t->database), 0);
-  assert_int_equal(LamRVEStateDestroy(&t->solver.state), 0);
-  assert_int_equal(LamRVEDestroy(&t->solver.rve), 0);
+  assert_int_equal(LamResponderDestroy(&t->solver), 0);
+  assert_int_equal(LamRVEDestroy(&t->rve), 0);
   LamSceneDestroy(&t->scene);
-}
-
-/* Solves what the table lacks to answer the load, until it does or nothing helps. */
-static void Refine(Tissue *t, const LamLoad *load, PetscReal accuracy)
-{
-  PetscInt n = 1;
-
-  while (n) {
-    PetscInt64 keys[LAM_MAX_NEEDS];
-    OWNED(LamTable, LamTableDestroy) table;
-    LamGrid grid;
-
-    assert_int_equal(LamDatabaseGetGrid(t->database, &grid), 0);
-    assert_int_equal(LamDatabaseGetTable(t->database, &table), 0);
-    assert_int_equal(LamTableNeeds(table, load, accuracy, &n, keys), 0);
-    for (PetscInt k = 0; k < n; k++) {
-      LamResponse response;
-      LamLoad node;
-
-      assert_int_equal(LamGridNodeLoad(grid, keys[k], &node), 0);
-      assert_int_equal(Respond(&t->solver, 1, &node, NULL, &response), 0);
-      assert_int_equal(LamDatabaseAdd(t->database, 1, &keys[k], &response), 0);
-    }
-  }
 }
 
 static LamLoad RandomLoad(uint64_t *seed, const LamSample *box)
@@ -130,7 +92,7 @@ static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
   for (int i = 0; i < n; i++) {
     const LamLoad load = RandomLoad(&seed, &t->scene->sample);
 
-    Refine(t, &load, accuracy);
+    assert_int_equal(RefineTable(t->database, t->solver, &load, accuracy), 0);
   }
   assert_int_equal(LamDatabaseGetTable(t->database, &table), 0);
   for (int i = 0; i < n; i++) {
@@ -139,7 +101,7 @@ static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
 
     assert_int_equal(LamTableQuery(table, &load, PETSC_INFINITY, &pair->answer), 0);
     if (pair->answer.status != LAM_CONVERGED || pair->answer.error_estimate == 0) continue;
-    assert_int_equal(Respond(&t->solver, 1, &load, NULL, &pair->solve), 0);
+    pair->solve = Solve(t, &load);
     if (pair->solve.status == LAM_CONVERGED) answered++;
   }
   return answered;
@@ -245,7 +207,7 @@ static void check_shift(const char scene[], LamLoad near, PetscReal d)
   assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
   assert_int_equal(LamTableNeeds(table, &near, 1, &n, keys), 0);
   assert_int_equal(LamTableDestroy(&table), 0);
-  Refine(&t, &near, PETSC_INFINITY);
+  assert_int_equal(RefineTable(t.database, t.solver, &near, PETSC_INFINITY), 0);
   assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
   /* at a node, where interpolation adds no error: the first whose cell is there */
   answer.status = LAM_OUT_OF_REACH;
@@ -258,7 +220,7 @@ static void check_shift(const char scene[], LamLoad near, PetscReal d)
   }
   assert_int_equal(LamTableDestroy(&table), 0);
   assert_int_equal(answer.status, LAM_CONVERGED);
-  assert_int_equal(Respond(&t.solver, 1, &load, NULL, &solve), 0);
+  solve = Solve(&t, &load);
   assert_near(answer.max_wall_tension, solve.max_wall_tension, 2e-3);
   assert_near(answer.max_traction, solve.max_traction, 2e-3);
   /* which of three families that are alike comes apart is not determined */

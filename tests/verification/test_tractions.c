@@ -1,8 +1,6 @@
-/*
-  Tractions between bonded cells. The forces T_k on faces 0, 1, 2 carry the whole stress: P V0 = sum_k T_k (x) L_k. For
-  F = lambda 1 symmetry makes T_k normal and equal, sum_k n_k (x) n_k = 3/2 1, and the mean normal traction per current
-  length is then the macroscopic Cauchy stress P11/lambda (F33 = 1).
-*/
+/* Tractions between bonded cells. The forces T_k on faces 0, 1, 2 carry the whole stress: P V0 = sum_k T_k (x) L_k. For
+   F = lambda 1 symmetry makes T_k normal and equal, sum_k n_k (x) n_k = 3/2 1, and the mean normal traction per current
+   length is then the macroscopic Cauchy stress P11/lambda (F33 = 1). */
 #include "support/rve_fixture.h"
 
 TEST(EqualBiaxialTractionIsTheCauchyStress)
