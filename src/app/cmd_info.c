@@ -223,11 +223,12 @@ static json_t *AxisToJSON(const LamMapSide *side)
 
 static PetscErrorCode ReadMap(const char path[], json_t *info)
 {
-  json_t *modes = json_object();
   LamMapPicture map;
+  json_t *modes;
 
   PetscFunctionBeginUser;
   PetscCall(LamMapRead(path, &map));
+  modes = json_object();
   for (PetscInt k = 0; k < LAM_FAILURE_MODE_COUNT; k++) {
     PetscInt count = 0;
 
