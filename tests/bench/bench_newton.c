@@ -1,5 +1,4 @@
-/* Newton iterations and factorisations of one solve from F = I, over walls, meshes, moduli and shears; prints figures.
- */
+/* Newton iterations and factorisations of one solve from F = I, over walls, meshes, moduli, shears; prints figures. */
 #include <stdio.h>
 #include "support/tissue.h"
 

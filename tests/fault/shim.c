@@ -81,8 +81,7 @@ static int IsHitFile(int fd, const char call[])
 
 /* ---- the calls ---- */
 
-/* About half of a write, as far as a kill can leave it: the system stops between pages. All of it where it lies in one.
- */
+/* About half of a write, as a kill can leave it: the system stops between pages. All of it where it lies in one. */
 static size_t UpToPage(size_t size, off_t offset)
 {
   const size_t first = offset > 0 ? (size_t)offset : 0, middle = (first + size / 2) / 4096 * 4096;

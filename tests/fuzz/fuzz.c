@@ -53,8 +53,7 @@ const char *__asan_default_options(void)
   return "allocator_may_return_null=1";
 }
 
-/* Where leaks are looked for. These libraries keep memory for later; that it does not grow the resident set shows.
- */
+/* Where leaks are looked for. These libraries keep memory; the resident set shows that it does not grow. */
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {

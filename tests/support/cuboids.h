@@ -74,8 +74,7 @@ PetscReal CuboidsGapError(const CuboidsProfile *profile, const CuboidsProfile *r
   chord, turned, at its ends.
 */
 PetscErrorCode CuboidsGripForce(Cuboids *c, PetscInt body, PetscReal force[2]);
-/* Force of the contact pressure on the left body, by the normal of its side; midpoints of 8 parts of every half-edge.
- */
+/* Force of the contact pressure on the left body, by the normal of its side; midpoints of 8 parts of a half-edge. */
 void CuboidsContactForce(Cuboids *c, PetscReal force[2]);
 
 #endif

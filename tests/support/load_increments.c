@@ -72,8 +72,7 @@ static PetscErrorCode IncrementSolve(IncrementTissue *t, double h, LamResponse *
   PetscFunctionReturn(0);
 }
 
-/* |P1 - P0 - A dF| in C1 + C2, A the mean of the two tangents, dF between the loads as they are rounded; *size: |A dF|.
- */
+/* |P1 - P0 - A dF| in C1 + C2, A the mean of the two tangents, dF between the rounded loads; *size: |A dF|. */
 static double IncrementError(const LamResponse *from, const LamResponse *to, double *size)
 {
   static const int in_plane[4] = {0, 1, 3, 4};

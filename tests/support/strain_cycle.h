@@ -1,5 +1,4 @@
-/* The net work of closed cycles of strain, to rounding: Gauss points between the faces of cells that the way crosses.
- */
+/* The net work of closed cycles of strain, to rounding: Gauss points between the faces of cells that it crosses. */
 #ifndef LAM_SUPPORT_STRAIN_CYCLE_H
 #define LAM_SUPPORT_STRAIN_CYCLE_H
 

@@ -70,8 +70,7 @@ PetscErrorCode StripDestroy(Strip *strip)
   PetscFunctionReturn(0);
 }
 
-/* Adds -forces and tangent of the pressure a `length` on the right side: -p int N_a (dx2, -dx1) along quadratic edges.
- */
+/* Adds -forces and tangent of the pressure a `length` on the right side: -p int N_a (dx2, -dx1) on quadratic edges. */
 static PetscErrorCode StripAddPressure(const Strip *strip, Mat K, PetscReal residual[])
 {
   static const double C[3][3] = {/* int N_a dN_b */

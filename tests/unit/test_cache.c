@@ -220,8 +220,7 @@ CACHE_TEST(NodesAreTheNodeSolvers, CACHE_WITH_NODES)
   assert_int_equal(RecordCount(fixture), fixture->node_calls);
 }
 
-/* With more accuracy than nodes can give; a question and its mirror image share a solve, and both get their own answer.
- */
+/* With more accuracy than nodes can give: a query and its mirror image share a solve, each with its own response. */
 CACHE_TEST(StatesBesideTheTableStartFromANode, CACHE_WITH_NODES)
 {
   const PetscReal c = cos(0.3), s = sin(0.3);

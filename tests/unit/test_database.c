@@ -1,5 +1,4 @@
-/* What a database keeps of its records: compact nodes, whole responses of the others and of those that are asked for.
- */
+/* What a database keeps of its records: compact nodes, whole responses of the others and of those requested. */
 #include "record_fixture.h"
 #include "database_internal.h"
 

@@ -207,8 +207,7 @@ TEST(StopEndsWithinAStep)
   FixtureDestroy(&fixture);
 }
 
-/* An element's Cauchy stress is the mean over its present volume: with its volume, it adds up to the virial sum P F^T.
- */
+/* An element's Cauchy stress is the mean over its present volume: times that, it adds up to the virial sum P F^T. */
 MACRO_TEST(CauchyIsTheMeanOverThePresentVolume)
 {
   PetscReal error = 0, of_means = 0;
