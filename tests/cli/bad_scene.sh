@@ -3,7 +3,7 @@
 
 # refused WORDS COMMAND...: status 2, the words on stderr, nothing on stdout
 refused() {
-  expect 2 -e "$(sed 's/[][.*]/\\&/g' <<<"$1")" "${@:2}"
+  expect 2 -e "$(sed 's/[]*.[]/\\&/g' <<<"$1")" "${@:2}"
   [ "$(wc -l <err.txt)" -eq 1 ] || fail "more than one line: $*: $(cat err.txt)"
   [ -s out.txt ] && fail "writes to stdout: $*: $(cat out.txt)"
 }
