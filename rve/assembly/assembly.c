@@ -77,8 +77,8 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
 /* Adds an element's residual and upper tangent to the sums. */
 static void Scatter(LamRVE rve, PetscInt e, const LamElementResult *element, PetscReal residual[])
 {
-  const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e], *position = &rve->linear.position[LAM_PAIRS * e];
-  PetscReal *values = rve->linear.values;
+  const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e], *position = &rve->linear->position[LAM_PAIRS * e];
+  PetscReal *values = rve->linear->values;
 
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
     for (PetscInt d = 0; d < 2; ++d) residual[2 * rve->mesh.node_class[nodes[a]] + d] += element->f[2 * a + d];
@@ -97,7 +97,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   PetscCall(PetscArrayzero(residual, rve->length));
-  PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
+  PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
@@ -118,7 +118,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   LamSealAssemble(rve, load, y, residual);
   if (suction != 0.0) {
     LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);
-    LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear.values);
+    LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear->values);
   }
   PetscFunctionReturn(0);
 }

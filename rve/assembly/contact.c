@@ -304,7 +304,7 @@ void LamContactAddCurvature(LamRVE rve)
 {
   const LamContact *contact = rve->contact;
   const PetscInt dofs = contact->dofs;
-  PetscReal *values = rve->linear.values;
+  PetscReal *values = rve->linear->values;
 
   for (PetscInt f = 0; f < contact->face_count; ++f) {
     const PetscInt *position = &contact->position[f * (dofs * (dofs + 1) / 2)];
@@ -320,13 +320,13 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance)
 {
   const LamContact *contact = rve->contact;
   const PetscInt dofs = contact->dofs;
-  PetscReal *values = rve->linear.values;
+  PetscReal *values = rve->linear->values;
 
   for (PetscInt h = 0; h < contact->count; ++h) {
     const PetscInt *coupling = &contact->coupling[h * dofs];
     const PetscReal *row = &contact->rows[h * dofs];
 
-    values[rve->linear.row[rve->linear.positions + h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
+    values[rve->linear->row[rve->linear->positions + h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
     for (PetscInt i = 0; i < dofs; ++i)
       if (coupling[i] >= 0) values[coupling[i]] = contact->active[h] ? -row[i] : 0.0;
   }

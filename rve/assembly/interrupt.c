@@ -28,7 +28,7 @@ PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, Pet
     *ok = PETSC_FALSE;
     PetscFunctionReturn(0);
   }
-  PetscCall(LamLinearFactor(&rve->linear, shift, negative, ok));
+  PetscCall(LamLinearFactor(rve->linear, shift, negative, ok));
   ++work->factorisations;
   PetscFunctionReturn(0);
 }

@@ -65,7 +65,8 @@ struct LamRVE_s {
   LamMesh mesh;
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the current iteration */
-  LamLinear linear;
+  LamLinear *linear;            /* in use; one of `systems` */
+  LamLinear systems[2];         /* of positions and pressures; of contact with multipliers, created at its first use */
   LamContact *contact;      /* NULL for bonded tissue; owned */
   LamRVE bonded;            /* contact tissue: the same tissue with bonded walls; owned */
   LamRVEState bonded_state; /* of `bonded`, work space; owned */
@@ -238,7 +239,7 @@ static inline PetscBool LamMayIterate(LamRVE rve)
 /* Marks the factorisation and the assembled values as outdated. */
 static inline void LamForgetFactor(LamRVE rve)
 {
-  rve->linear.rate = PETSC_INFINITY;
+  rve->linear->rate = PETSC_INFINITY;
   rve->consistent = PETSC_FALSE;
 }
 

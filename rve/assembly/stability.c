@@ -13,7 +13,7 @@
 
 PetscInt LamExpectedNegative(LamRVE rve)
 {
-  return (rve->contact ? LamContactCountActive(rve->contact) : 0) + (rve->seal.closed ? rve->linear.lumens : 0);
+  return (rve->contact ? LamContactCountActive(rve->contact) : 0) + (rve->seal.closed ? rve->linear->lumens : 0);
 }
 
 /* Factors with a shift; negative: eigenvalues beyond the expected ones. */
@@ -38,7 +38,7 @@ static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *
 
   PetscFunctionBeginUser;
   if (*ok) {
-    PetscCall(PetscMalloc2(rve->linear.n, &mode, rve->linear.n, &image));
+    PetscCall(PetscMalloc2(rve->linear->n, &mode, rve->linear->n, &image));
     LamStartMode(rve, mode);
     PetscCall(LamImproveSoftestMode(rve, 3, mode));
     eigenvalue = LamModeCurvature(rve, mode, image);
@@ -71,10 +71,10 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
     LamContactAddCurvature(rve);
     LamContactSetRows(rve, 0.0);
   }
-  if (rve->linear.rate <= LAM_NEAR_RATE) {
+  if (rve->linear->rate <= LAM_NEAR_RATE) {
     /* eigenvalues of K0^-1 K are within `rate` of 1, so K has the inertia of the factored matrix K0 */
-    rve->linear.nearby = PETSC_TRUE;
-    rve->linear.rate = PETSC_INFINITY;
+    rve->linear->nearby = PETSC_TRUE;
+    rve->linear->rate = PETSC_INFINITY;
     PetscFunctionReturn(0);
   }
   PetscCall(FactorShifted(rve, 0.0, negative, ok));
@@ -86,7 +86,7 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
    with that shift. */
 static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 {
-  const PetscReal diagonal = LamLargestDiagonal(&rve->linear);
+  const PetscReal diagonal = LamLargestDiagonal(rve->linear);
   PetscReal low = 0.0, high = 0.0;
   PetscInt negative;
   PetscBool ok;
@@ -116,13 +116,13 @@ static PetscErrorCode BracketLowest(LamRVE rve, PetscReal *shift)
 
 void LamStartMode(LamRVE rve, PetscReal mode[])
 {
-  for (PetscInt i = 0; i < rve->linear.n; ++i) mode[i] = 0.0; /* modes have no multiplier components */
-  for (PetscInt i = 0; i < rve->linear.positions; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
+  for (PetscInt i = 0; i < rve->linear->n; ++i) mode[i] = 0.0; /* modes have no multiplier components */
+  for (PetscInt i = 0; i < rve->linear->positions; ++i) mode[i] = PetscSinReal(1.0 + 2.399963 * (PetscReal)i);
 }
 
 PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal mode[])
 {
-  const PetscInt n = rve->linear.n, positions = rve->linear.positions, pressures = n - rve->linear.lumens;
+  const PetscInt n = rve->linear->n, positions = rve->linear->positions, pressures = n - rve->linear->lumens;
   PetscReal largest = 0.0, *next;
 
   PetscFunctionBeginUser;
@@ -131,8 +131,8 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
     PetscReal norm;
 
     PetscCall(PetscArrayzero(mode + pressures,
-                             rve->linear.lumens)); /* the pressures of the solution follow from its positions */
-    PetscCall(LamLinearSolveOnce(&rve->linear, 1, mode, next));
+                             rve->linear->lumens)); /* the pressures of the solution follow from its positions */
+    PetscCall(LamLinearSolveOnce(rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, positions));
     norm = PetscSqrtReal(LamInnerProduct(positions, mode, mode));
     for (PetscInt i = 0; i < positions; ++i) mode[i] /= norm;
@@ -148,20 +148,20 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 
 void LamAddMode(LamRVE rve, PetscReal factor, const PetscReal mode[], PetscReal to[])
 {
-  for (PetscInt i = 0; i < rve->linear.positions; ++i) to[2 + i] += factor * mode[i];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) to[rve->ndof + c] += factor * mode[rve->linear.pressures + c];
+  for (PetscInt i = 0; i < rve->linear->positions; ++i) to[2 + i] += factor * mode[i];
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) to[rve->ndof + c] += factor * mode[rve->linear->pressures + c];
 }
 
 PetscReal LamModeSlope(LamRVE rve, const PetscReal mode[], const PetscReal residual[])
 {
-  return LamInnerProduct(rve->linear.positions, mode, residual + 2) +
-         LamInnerProduct(rve->linear.lumens, mode + rve->linear.pressures, residual + rve->ndof);
+  return LamInnerProduct(rve->linear->positions, mode, residual + 2) +
+         LamInnerProduct(rve->linear->lumens, mode + rve->linear->pressures, residual + rve->ndof);
 }
 
 PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[])
 {
-  LamLinearMultiply(&rve->linear, mode, image);
-  return LamInnerProduct(rve->linear.n, mode, image);
+  LamLinearMultiply(rve->linear, mode, image);
+  return LamInnerProduct(rve->linear->n, mode, image);
 }
 
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[])
@@ -174,7 +174,7 @@ PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[
   PetscCall(BracketLowest(rve, &shift));
   if (rve->work.stopped) PetscFunctionReturn(0);
   PetscCall(LamImproveSoftestMode(rve, 30, mode));
-  PetscCall(PetscMalloc1(rve->linear.n, &image));
+  PetscCall(PetscMalloc1(rve->linear->n, &image));
   *eigenvalue = LamModeCurvature(rve, mode, image);
   PetscCall(PetscFree(image));
   PetscFunctionReturn(0);

@@ -85,7 +85,7 @@ PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt *row = rve->linear.row;
+  const PetscInt *row = rve->linear->row;
 
   for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
     PetscReal x[LAM_ELEMENT_NODES][2], f[LAM_ELEMENT_DOFS] = {0};
@@ -96,30 +96,30 @@ static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
       const PetscInt class = mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]];
 
       for (PetscInt d = 0; d < 2 && class > 0; ++d)
-        rve->linear.values[row[2 * (class - 1) + d + 1] - 1] += f[2 * inner_edge[k] + d];
+        rve->linear->values[row[2 * (class - 1) + d + 1] - 1] += f[2 * inner_edge[k] + d];
     }
   }
 }
 
 void LamSealSetOpen(LamRVE rve)
 {
-  for (PetscInt i = rve->linear.pressures; i < rve->linear.n; ++i) rve->linear.values[rve->linear.row[i]] = 1.0;
+  for (PetscInt i = rve->linear->pressures; i < rve->linear->n; ++i) rve->linear->values[rve->linear->row[i]] = 1.0;
 }
 
 void LamSealAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[])
 {
   const LamSeal *seal = &rve->seal;
-  const PetscInt first = rve->linear.pressures;
+  const PetscInt first = rve->linear->pressures;
 
   LamSealSetOpen(rve);
   if (!seal->closed) return;
   LamLumenAreas(rve, y, seal->area);
   AddAreaRows(rve, y, -load->F[8]);
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) {
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) {
     const PetscReal over = y[rve->ndof + c] - load->turgor * LamTurgorFactor(rve, c);
 
     residual[rve->ndof + c] = seal->water[c] * (1.0 - over / seal->bulk_modulus) - load->F[8] * seal->area[c];
-    rve->linear.values[rve->linear.row[first + c]] = -seal->water[c] / seal->bulk_modulus;
+    rve->linear->values[rve->linear->row[first + c]] = -seal->water[c] / seal->bulk_modulus;
   }
 }
 
@@ -129,7 +129,7 @@ void LamSealSetConsistent(LamRVE rve, const LamLoad *load, PetscReal y[])
 
   if (!seal->closed) return;
   LamLumenAreas(rve, y, seal->area);
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c)
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c)
     y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c) +
                        seal->bulk_modulus * (1.0 - load->F[8] * seal->area[c] / seal->water[c]);
 }
@@ -139,7 +139,7 @@ PetscReal LamSealError(LamRVE rve, const PetscReal residual[])
   const LamSeal *seal = &rve->seal;
   PetscReal sum = 0.0;
 
-  for (PetscInt c = 0; c < rve->linear.lumens && seal->closed; ++c)
+  for (PetscInt c = 0; c < rve->linear->lumens && seal->closed; ++c)
     sum += PetscSqr(residual[rve->ndof + c] / (1.0 + seal->water[c] / seal->bulk_modulus));
   return sum;
 }

@@ -87,13 +87,13 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(rve->linear.n, &unknowns));
+  PetscCall(PetscCalloc1(rve->linear->n, &unknowns));
   *eigenvalue = NAN;
   LamForgetFactor(rve);
   PetscCall(LamTakeState(rve, state));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
   if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));
-  largest = LamLargestEntry(rve->linear.positions, unknowns);
+  largest = LamLargestEntry(rve->linear->positions, unknowns);
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     for (PetscInt d = 0; d < 2; ++d) {
       const PetscInt at = 2 * (mesh->node_class[i] - 1) + d; /* the first class is prescribed */

@@ -107,9 +107,9 @@ static void AddTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
 static void AddSealedTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
 {
   const LamSeal *seal = &rve->seal;
-  const PetscInt pressures = c->size - rve->linear.lumens;
+  const PetscInt pressures = c->size - rve->linear->lumens;
 
-  for (PetscInt k = 0; k < rve->linear.lumens; ++k) {
+  for (PetscInt k = 0; k < rve->linear->lumens; ++k) {
     const PetscReal factor = LamTurgorFactor(rve, k), compliance = seal->water[k] / seal->bulk_modulus;
 
     c->R[Q_F33 * c->size + pressures + k] -= seal->area[k];
@@ -189,9 +189,9 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
 
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 {
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
+  const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
 
-  for (PetscInt i = 0; i < rve->linear.n; ++i)
+  for (PetscInt i = 0; i < rve->linear->n; ++i)
     copy[i] = i < positions || i >= pressures || rve->contact->active[i - positions] ? column[i] : 0.0;
 }
 
@@ -199,27 +199,27 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 static void CopyResidual(LamRVE rve, PetscReal r[])
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
+  const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
 
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->residual[i];
   if (contact) LamContactAddForce(rve, rve->trial);
   for (PetscInt i = 0; i < positions; ++i) r[i] = rve->trial[i + 2];
   for (PetscInt h = 0; contact && h < contact->count; ++h)
     r[positions + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0.0;
-  for (PetscInt k = 0; k < rve->linear.lumens; ++k)
+  for (PetscInt k = 0; k < rve->linear->lumens; ++k)
     r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
 }
 
 /* Corrects L_F to first order to the solution near the positions: -= L_Fy K^-1 r. */
 static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear->n;
   PetscReal *r, *step, *rest, *R;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n, &r, n, &step, n, &rest, n, &R));
   CopyResidual(rve, r);
-  PetscCall(LamLinearSolve(&rve->linear, 1, r, step, rest));
+  PetscCall(LamLinearSolve(rve->linear, 1, r, step, rest));
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
     LamCopyActive(rve, c->R + q * c->size + 2, R);
     c->Lq[q] -= LamInnerProduct(n, R, step);
@@ -232,13 +232,13 @@ static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
    rest^T K^-1 rest) / V0, whose last term is neglected: it is of second order in the error of the solve. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
-  const PetscInt n = rve->linear.n, nq = c->nq;
+  const PetscInt n = rve->linear->n, nq = c->nq;
   PetscReal *R, *X, *rest;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
-  PetscCall(LamLinearSolve(&rve->linear, nq, R, X, rest));
+  PetscCall(LamLinearSolve(rve->linear, nq, R, X, rest));
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
@@ -258,7 +258,7 @@ static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
 {
   PetscFunctionBeginUser;
   c->nq = rve->contact ? NQ : NQ - 1;
-  c->size = rve->linear.n + 2;
+  c->size = rve->linear->n + 2;
   PetscCall(PetscCalloc1(c->nq * c->size, &c->R));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, c);
   AddLumen(rve, load, c);
@@ -279,7 +279,7 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
     Lq[q] = c.Lq[q];
     for (PetscInt r = q; r < LAM_F_COUNT; ++r) Lqq[q][r] = Lqq[r][q] = c.Lqq[q][r];
-    PetscCall(PetscArraycpy(R + q * rve->linear.n, c.R + q * c.size + 2, rve->linear.n));
+    PetscCall(PetscArraycpy(R + q * rve->linear->n, c.R + q * c.size + 2, rve->linear->n));
   }
   PetscCall(PetscFree(c.R));
   PetscFunctionReturn(0);

@@ -5,7 +5,7 @@
 
 PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **out)
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear->n;
   LamBorder *border;
 
   PetscFunctionBeginUser;
@@ -35,7 +35,7 @@ PetscErrorCode LamBorderDestroy(LamBorder **border)
 
 PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
 {
-  const PetscInt n = rve->linear.n, multipliers = rve->contact ? rve->contact->count : 0;
+  const PetscInt n = rve->linear->n, multipliers = rve->contact ? rve->contact->count : 0;
   PetscReal Lq[LAM_F_COUNT], sum;
 
   PetscFunctionBeginUser;
@@ -44,7 +44,7 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
   border->freeze_F = PETSC_FALSE;
   PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
   for (PetscInt k = 0; k < border->count; ++k) {
-    const PetscReal *R = border->R + border->q[k] * n + rve->linear.positions;
+    const PetscReal *R = border->R + border->q[k] * n + rve->linear->positions;
 
     border->rest[k] = Lq[border->q[k]] - rve->mesh.V0 * border->P[k];
     sum += PetscSqr(border->rest[k]);
@@ -58,7 +58,7 @@ PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
 /* Step of positions and F for a change dq of the free components. */
 static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscReal solution[])
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear->n;
 
   for (PetscInt i = 0; i < n; ++i) solution[i] = border->solution[i];
   for (PetscInt k = 0; k < border->count; ++k) {
@@ -69,19 +69,19 @@ static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscRe
 
 PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs[], PetscReal solution[])
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear->n;
   PetscReal S[LAM_F_COUNT][LAM_F_COUNT], w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT], b[LAM_F_COUNT],
       dq[LAM_F_COUNT] = {0};
 
   PetscFunctionBeginUser;
   if (!border) {
-    PetscCall(LamLinearSolveOnce(&rve->linear, 1, rhs, solution));
+    PetscCall(LamLinearSolveOnce(rve->linear, 1, rhs, solution));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscArraycpy(border->rhs, rhs, n));
   for (PetscInt k = 0; k < border->count; ++k)
     LamCopyActive(rve, border->R + border->q[k] * n, border->rhs + (k + 1) * n);
-  PetscCall(LamLinearSolveOnce(&rve->linear, border->count + 1, border->rhs, border->solution));
+  PetscCall(LamLinearSolveOnce(rve->linear, border->count + 1, border->rhs, border->solution));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->rhs + (k + 1) * n;
 

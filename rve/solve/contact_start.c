@@ -37,7 +37,7 @@ void LamContactStartAffine(LamRVE rve, const LamLoad *load)
   }
   CloseClearance(rve, load);
   (void)PetscArrayzero(rve->stress, rve->mesh.element_count);
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
   for (PetscInt h = 0; h < rve->contact->count; ++h)
     rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
 }
@@ -54,7 +54,7 @@ static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
     for (PetscInt d = 0; d < 2; ++d)
       rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
   }
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) rve->y[rve->ndof + c] = rve->bonded->y[rve->bonded->ndof + c];
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) rve->y[rve->ndof + c] = rve->bonded->y[rve->bonded->ndof + c];
   (void)LamSetConsistentStresses(rve, load, rve->y);
 }
 
@@ -65,7 +65,7 @@ static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
 static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
 {
   LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions;
+  const PetscInt positions = rve->linear->positions;
   PetscReal energy, *rhs, *solution;
   PetscInt negative;
   PetscBool valid;
@@ -75,14 +75,14 @@ static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool 
   PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
-  PetscCall(PetscArrayzero(rve->linear.values, rve->linear.nonzeros));
+  PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
   LamContactSetRows(rve, 0.0);
   LamSealSetOpen(rve);
   PetscCall(LamRVEFactor(rve, 1.0, &negative, ok));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(rve->linear.n, &rhs, rve->linear.n, &solution));
+  PetscCall(PetscCalloc2(rve->linear->n, &rhs, rve->linear->n, &solution));
   for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
-  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rhs, solution));
+  PetscCall(LamLinearSolveOnce(rve->linear, 1, rhs, solution));
   for (PetscInt h = 0; h < contact->count; ++h)
     contact->lambda[h] = contact->active[h] ? PetscMax(0.0, solution[positions + h]) : 0.0;
   PetscCall(PetscFree2(rhs, solution));

@@ -16,7 +16,7 @@
 
 PetscErrorCode LamContactStepCreate(LamRVE rve, LamBorder *border, LamContactStep *step)
 {
-  const PetscInt n = rve->linear.n;
+  const PetscInt n = rve->linear->n;
 
   PetscFunctionBeginUser;
   *step = (LamContactStep){.before = PETSC_INFINITY, .border = border};
@@ -48,7 +48,7 @@ void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm)
    needed slow down convergence. */
 static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *step, PetscBool *ok)
 {
-  PetscReal next = PetscMin(LEAST_SHIFT * LamLargestDiagonal(&rve->linear), LamBendingStiffness(rve));
+  PetscReal next = PetscMin(LEAST_SHIFT * LamLargestDiagonal(rve->linear), LamBendingStiffness(rve));
 
   PetscFunctionBeginUser;
   if (step->shift > LAM_CONTACT_PROXIMAL) next = PetscMax(step->shift / 8.0, 8.0 * LAM_CONTACT_PROXIMAL);
@@ -61,11 +61,11 @@ static PetscErrorCode FactorStable(LamRVE rve, PetscBool again, LamContactStep *
 static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
+  const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < positions; ++i) step->rhs[i] = -rve->residual[i + 2];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) step->rhs[pressures + c] = -rve->residual[rve->ndof + c];
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) step->rhs[pressures + c] = -rve->residual[rve->ndof + c];
   for (PetscInt h = 0; h < contact->count; ++h)
     step->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
   PetscCall(LamBorderSolve(rve, step->border, step->rhs, step->solution));
@@ -76,11 +76,11 @@ static PetscErrorCode Solve(LamRVE rve, LamContactStep *step)
 static void TakeSolution(LamRVE rve, LamContactStep *step)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear.positions, pressures = rve->linear.pressures;
+  const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
 
   rve->step[0] = rve->step[1] = 0.0;
   (void)PetscArraycpy(rve->step + 2, step->solution, positions);
-  (void)PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear.lumens);
+  (void)PetscArraycpy(rve->step + rve->ndof, step->solution + pressures, rve->linear->lumens);
   for (PetscInt h = 0; h < contact->count; ++h)
     step->lambda[h] = contact->active[h] ? step->solution[positions + h] : 0.0;
 }
@@ -97,7 +97,7 @@ static PetscErrorCode FactorAndSolve(LamRVE rve, PetscReal compliance, PetscBool
   PetscCall(Solve(rve, step));
   step->updates = (PetscBool)(!step->border && step->shift <= LAM_CONTACT_PROXIMAL);
   PetscCall(PetscArraycpy(step->factored, rve->contact->active, rve->contact->count));
-  PetscCall(PetscArraycpy(step->first, step->solution, rve->linear.n));
+  PetscCall(PetscArraycpy(step->first, step->solution, rve->linear->n));
   PetscFunctionReturn(0);
 }
 

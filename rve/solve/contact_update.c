@@ -40,7 +40,7 @@ static void SetColumn(LamRVE rve, PetscInt hat, PetscBool taken, PetscReal colum
   const PetscInt *classes = &contact->classes[hat / contact->hats * contact->chain];
   const PetscReal *row = &contact->rows[hat * contact->dofs];
 
-  if (!taken) column[rve->linear.positions + hat] = 1.0;
+  if (!taken) column[rve->linear->positions + hat] = 1.0;
   for (PetscInt i = 0; i < contact->dofs && taken; ++i)
     if (classes[i / 2] > 0) column[LamUnknown(classes[i / 2], i % 2)] -= row[i];
 }
@@ -72,7 +72,7 @@ PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const 
                                     PetscReal solution[], PetscBool *ok)
 {
   const LamContact *contact = rve->contact;
-  const PetscInt n = rve->linear.n, positions = rve->linear.positions;
+  const PetscInt n = rve->linear->n, positions = rve->linear->positions;
   PetscReal S[MOST_CHANGES * MOST_CHANGES], r[MOST_CHANGES], mu[MOST_CHANGES], *B, *Y;
   PetscInt positive, dropped = 0;
   Changes c;
@@ -84,7 +84,7 @@ PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const 
   PetscCall(PetscMalloc2(c.count * n, &B, c.count * n, &Y));
   PetscCall(PetscArrayzero(B, c.count * n));
   for (PetscInt k = 0; k < c.count; ++k) SetColumn(rve, c.hat[k], c.taken[k], &B[k * n]);
-  PetscCall(LamLinearSolveOnce(&rve->linear, c.count, B, Y));
+  PetscCall(LamLinearSolveOnce(rve->linear, c.count, B, Y));
   for (PetscInt k = 0; k < c.count; ++k) {
     const PetscReal weight = contact->weight[c.hat[k]];
 
@@ -94,7 +94,7 @@ PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const 
     r[k] = LamInnerProduct(n, &B[k * n], first) - (c.taken[k] ? contact->gap[c.hat[k]] * weight : 0.0);
   }
   PetscCall(SolveSmall(c.count, S, r, mu, &positive, ok));
-  if (rve->linear.negative + positive - dropped > LamExpectedNegative(rve)) *ok = PETSC_FALSE;
+  if (rve->linear->negative + positive - dropped > LamExpectedNegative(rve)) *ok = PETSC_FALSE;
   for (PetscInt k = 0; k < c.count; ++k)
     for (PetscInt i = 0; i < n; ++i) solution[i] -= mu[k] * Y[k * n + i];
   for (PetscInt k = 0; k < c.count; ++k) solution[positions + c.hat[k]] = c.taken[k] ? mu[k] : 0.0;

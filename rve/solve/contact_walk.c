@@ -44,7 +44,7 @@ static PetscErrorCode LowestEigenvalue(LamRVE rve, LamRVEState solution, PetscRe
   PetscCall(LamTakeState(rve, solution));
   PetscCall(LamFactorConsistent(rve, &solution->load, &negative, &ok));
   if (!ok) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  PetscCall(PetscMalloc1(rve->linear->n, &mode));
   PetscCall(LamSoftestMode(rve, eigenvalue, mode));
   PetscCall(PetscFree(mode));
   PetscFunctionReturn(0);

@@ -48,7 +48,7 @@ PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iterat
 */
 static PetscBool FactorServes(LamRVE rve, PetscReal norm, PetscReal tolerance)
 {
-  return (PetscBool)(rve->linear.rate <= LAM_NEAR_RATE && rve->linear.rate * norm <= tolerance);
+  return (PetscBool)(rve->linear->rate <= LAM_NEAR_RATE && rve->linear->rate * norm <= tolerance);
 }
 
 PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
@@ -63,7 +63,7 @@ PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
 PetscErrorCode LamFactorShifted(LamRVE rve, PetscReal base, PetscReal next, PetscReal growth, PetscReal *shift,
                                 PetscBool *ok)
 {
-  const PetscReal diagonal = LamLargestDiagonal(&rve->linear);
+  const PetscReal diagonal = LamLargestDiagonal(rve->linear);
   PetscInt negative;
 
   PetscFunctionBeginUser;
@@ -79,7 +79,7 @@ PetscErrorCode LamFactorShifted(LamRVE rve, PetscReal base, PetscReal next, Pets
 
 PetscErrorCode LamFactorPositive(LamRVE rve, PetscReal least, PetscReal *last_shift, PetscBool *ok)
 {
-  const PetscReal first = PetscMin(least, LEAST_SHIFT * LamLargestDiagonal(&rve->linear));
+  const PetscReal first = PetscMin(least, LEAST_SHIFT * LamLargestDiagonal(rve->linear));
   const PetscReal next = PetscMax(*last_shift / 8.0, first);
 
   PetscFunctionBeginUser;
@@ -125,9 +125,9 @@ static void WatchFactor(LamRVE rve, const LamBorder *border, PetscReal shift, Pe
   const PetscReal rate = 2.0 * norm / previous;
 
   if (border || shift != 0.0 || alpha != 1.0)
-    rve->linear.rate = PETSC_INFINITY;
+    rve->linear->rate = PETSC_INFINITY;
   else
-    rve->linear.rate = fresh ? rate : PetscMax(rate, rve->linear.rate);
+    rve->linear->rate = fresh ? rate : PetscMax(rate, rve->linear->rate);
 }
 
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome)
@@ -154,7 +154,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
     /* an affinely moved initial guess does not count as converged; rate * largest estimates the next step */
     if ((norm <= tolerance && (it > 0 || !rve->moved)) ||
-        LamAtRounding(rve, norm, tolerance, rve->linear.rate * largest)) {
+        LamAtRounding(rve, norm, tolerance, rve->linear->rate * largest)) {
       PetscCall(LamReportIteration(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
       rve->consistent = last;
@@ -198,7 +198,7 @@ PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const Pe
   PetscFunctionBeginUser;
   PetscCall(LamImproveSoftestMode(rve, iterations, mode));
   if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
-  largest = LamLargestEntry(rve->linear.positions, mode);
+  largest = LamLargestEntry(rve->linear->positions, mode);
   /* if the slope is zero, the mode's own sign */
   sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
   LamAddMode(rve, sign * LAM_ESCAPE_STEP / largest, mode, rve->step);
@@ -246,7 +246,7 @@ PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *
   (void)LamSetConsistentStresses(rve, load, rve->y);
   PetscCall(LamDescentCreate(rve, &descent));
   LamDescentKeep(rve, now, &descent);
-  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  PetscCall(PetscMalloc1(rve->linear->n, &mode));
   LamStartMode(rve, mode);
   for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal norm, alpha;

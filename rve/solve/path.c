@@ -74,7 +74,7 @@ PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch
   PetscFunctionBeginUser;
   PetscCall(LamFactorConsistent(rve, load, negative, ok));
   if (!*ok || *negative <= 0) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(rve->linear.n, &mode));
+  PetscCall(PetscMalloc1(rve->linear->n, &mode));
   PetscCall(LamRVEStateCreate(rve, &saddle));
   for (PetscInt k = 0; k < (rve->contact ? MAX_CONTACT_SWITCHES : MAX_BRANCH_SWITCHES) && *ok && *negative > 0; ++k) {
     LamNewtonOutcome outcome;
@@ -86,7 +86,7 @@ PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch
       PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
                              "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)*negative,
                              (double)rve->lowest_eigenvalue));
-    LamAddMode(rve, kick / LamLargestEntry(rve->linear.positions, mode), mode, rve->y);
+    LamAddMode(rve, kick / LamLargestEntry(rve->linear->positions, mode), mode, rve->y);
     PetscCall(rve->contact ? LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome)
                            : LamNewtonSafe(rve, load, &outcome));
     for (PetscInt i = 0; i < rve->ndof; ++i) moved = PetscMax(moved, PetscAbsReal(rve->y[i] - saddle->y[i]));

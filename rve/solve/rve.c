@@ -6,6 +6,7 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(rve));
   (*rve)->comm = comm;
+  (*rve)->linear = &(*rve)->systems[0];
   (*rve)->wanted = LAM_WANT_ALL;
   PetscFunctionReturn(0);
 }
@@ -107,8 +108,8 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
     couplings =
         (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
   }
-  PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, &rve->linear));
-  if (rve->contact) PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
+  PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, rve->linear));
+  if (rve->contact) PetscCall(LamContactSetMatrix(rve->linear, rve->contact));
   rve->ndof = 2 * rve->mesh.class_count;
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
@@ -123,7 +124,7 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
   if (rve->is_set_up) PetscFunctionReturn(0);
   PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
   PetscCall(SetUpArrays(rve));
-  PetscCall(LamLinearCreateMatrix(rve->comm, &rve->linear));
+  PetscCall(LamLinearCreateMatrix(rve->comm, rve->linear));
   if (rve->contact) {
     LamMicrostructure bonded = rve->micro;
 
@@ -158,7 +159,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
   PetscCall(LamContactDestroy(&(*rve)->contact));
-  PetscCall(LamLinearDestroy(&(*rve)->linear));
+  for (PetscInt k = 0; k < 2; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
   PetscCall(PetscFree((*rve)->law));
   PetscCall(LamMicrostructureDestroy(&(*rve)->micro));
@@ -173,7 +174,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
 PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
 {
   PetscFunctionBeginUser;
-  *unknowns = rve->linear.n;
+  *unknowns = rve->linear->n;
   PetscFunctionReturn(0);
 }
 
@@ -206,7 +207,7 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   PetscFunctionBeginUser;
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
   /* the factorisation assumed to be of a nearby matrix was not */
-  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear.negative > LamExpectedNegative(rve))
+  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear->negative > LamExpectedNegative(rve))
     PetscCall(LamRefuse(response, LAM_UNSTABLE, "the state is a saddle"));
   if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
@@ -252,7 +253,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_SOLVE;
-  response->unknowns = rve->linear.n;
+  response->unknowns = rve->linear->n;
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
@@ -319,7 +320,7 @@ PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unkn
   PetscInt repeats = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&rve));
+  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
   PetscCall(LamRVESetMicrostructure(rve, micro));
   PetscCall(SetUpArrays(rve));
   begin = LamClock();
@@ -332,7 +333,7 @@ PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unkn
     now = LamClock();
   } while (now - begin < 0.02);
   *seconds = (now - begin) / (PetscReal)repeats;
-  *unknowns = rve->linear.n;
+  *unknowns = rve->linear->n;
   PetscCall(LamRVEDestroy(&rve));
   PetscFunctionReturn(0);
 }

@@ -95,7 +95,7 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(state->y, rve->mesh.class_X, rve->ndof));
-  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear.lumens));
+  PetscCall(PetscArrayzero(state->y + rve->ndof, rve->linear->lumens));
   PetscCall(PetscArrayzero(state->lambda, state->multipliers));
   for (PetscInt f = 0; f < state->faces; ++f) {
     state->hats[f][0] = rve->contact->faces[f].low;
@@ -121,7 +121,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state)
 {
   for (PetscInt i = 0; i < rve->ndof; ++i) state->y[i] = rve->y[i];
-  for (PetscInt c = 0; c < rve->linear.lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
+  for (PetscInt c = 0; c < rve->linear->lumens; ++c) state->y[rve->ndof + c] = LamTurgor(rve, load, rve->y, c);
   for (PetscInt h = 0; h < state->multipliers; ++h) state->lambda[h] = rve->contact->lambda[h];
   for (PetscInt f = 0; f < state->faces; ++f) {
     state->hats[f][0] = rve->contact->faces[f].first;

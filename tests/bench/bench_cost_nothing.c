@@ -112,7 +112,7 @@ static PetscErrorCode Sample(Runner *r, PetscInt states, double *seconds)
 
 static void PrintProblem(const Runner *r)
 {
-  printf("  %-42s %8d %9d %10lld %5d %5d", r->problem.name, (int)r->rve->linear.n, (int)r->rve->linear.nonzeros,
+  printf("  %-42s %8d %9d %10lld %5d %5d", r->problem.name, (int)r->rve->linear->n, (int)r->rve->linear->nonzeros,
          r->bytes, (int)r->response.newton_iterations, (int)r->response.factorisations);
 }
 

@@ -90,7 +90,7 @@ static PetscErrorCode AddRoughSolution(PetscInt n, const PetscReal rhs[], PetscR
 /* rest := rhs - K x. */
 static void FindRestOf(PetscInt n, const PetscReal rhs[], const PetscReal x[], PetscReal rest[])
 {
-  LamLinearMultiply(&tissue->linear, x, rest);
+  LamLinearMultiply(tissue->linear, x, rest);
   for (PetscInt i = 0; i < n; ++i) rest[i] = rhs[i] - rest[i];
 }
 
@@ -122,7 +122,7 @@ static PetscErrorCode SolveExtended(PetscInt n, const PetscReal rhs[], PetscReal
 
 PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
-  const PetscInt n = tissue->linear.n;
+  const PetscInt n = tissue->linear->n;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(solution, count * n));
@@ -157,6 +157,7 @@ static PetscErrorCode Create(const ExtendedCase *c, LamRVE *out)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve));
+  rve->linear = &rve->systems[0];
   rve->micro = Microstructure(c);
   rve->wanted = LAM_WANT_ALL;
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
@@ -168,11 +169,11 @@ static PetscErrorCode Create(const ExtendedCase *c, LamRVE *out)
     couplings =
         (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
   }
-  PetscCall(LamLinearCreate(&rve->mesh, c->contact ? &couplings : NULL, 0, &rve->linear));
-  if (c->contact) PetscCall(LamContactSetMatrix(&rve->linear, rve->contact));
+  PetscCall(LamLinearCreate(&rve->mesh, c->contact ? &couplings : NULL, 0, rve->linear));
+  if (c->contact) PetscCall(LamContactSetMatrix(rve->linear, rve->contact));
   rve->ndof = rve->length = 2 * rve->mesh.class_count;
   PetscCall(
-      PetscCalloc4(rve->ndof, &rve->y, rve->linear.n, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
+      PetscCalloc4(rve->ndof, &rve->y, rve->linear->n, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
   PetscCall(PetscMalloc2(rve->mesh.cell_count, &rve->seal.area, rve->mesh.cell_count, &rve->seal.factor));
   *out = rve;
   PetscFunctionReturn(0);
@@ -182,7 +183,7 @@ static PetscErrorCode Destroy(LamRVE rve)
 {
   PetscFunctionBeginUser;
   PetscCall(LamContactDestroy(&rve->contact));
-  PetscCall(LamLinearDestroy(&rve->linear));
+  PetscCall(LamLinearDestroy(rve->linear));
   PetscCall(LamMeshDestroy(&rve->mesh));
   PetscCall(PetscFree(rve->law));
   PetscCall(PetscFree(rve->geometry));
@@ -223,7 +224,7 @@ static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal gradi
   }
   CopyResidual(rve, gradient);
   *norm = 0;
-  for (PetscInt i = 0; i < rve->linear.n; ++i) *norm += gradient[i] * gradient[i];
+  for (PetscInt i = 0; i < rve->linear->n; ++i) *norm += gradient[i] * gradient[i];
   *norm = PetscSqrtReal(*norm);
   PetscFunctionReturn(0);
 }
@@ -234,7 +235,7 @@ static void MoveMultipliers(LamRVE rve)
   LamContact *contact = rve->contact;
 
   for (PetscInt h = 0; contact && h < contact->count; ++h)
-    if (contact->active[h]) contact->lambda[h] -= rve->step[rve->linear.positions + h];
+    if (contact->active[h]) contact->lambda[h] -= rve->step[rve->linear->positions + h];
 }
 
 /* Newton's method with the double-precision factor, until the residual falls no further. */
@@ -244,15 +245,15 @@ static PetscErrorCode Solve(LamRVE rve, const LamLoad *load, ExtendedAnswer *ans
   PetscReal norm = 0, before = -1, *gradient;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rve->linear.n, &gradient));
+  PetscCall(PetscMalloc1(rve->linear->n, &gradient));
   for (answer->iterations = 0; answer->iterations < NEWTON_ITERATIONS; ++answer->iterations) {
     PetscCall(Linearise(rve, load, gradient, &norm));
     if (answer->iterations == 0) answer->rounding = (double)norm;
     if (norm == 0 || (before >= 0 && !(norm < STAGNATION * before))) break;
     before = norm;
-    PetscCall(PetscArrayzero(rve->step, rve->linear.n));
-    PetscCall(AddRoughSolution(rve->linear.n, gradient, rve->step));
-    for (PetscInt i = 0; i < rve->linear.positions; ++i) rve->y[i + 2] -= rve->step[i];
+    PetscCall(PetscArrayzero(rve->step, rve->linear->n));
+    PetscCall(AddRoughSolution(rve->linear->n, gradient, rve->step));
+    for (PetscInt i = 0; i < rve->linear->positions; ++i) rve->y[i + 2] -= rve->step[i];
     MoveMultipliers(rve);
   }
   PetscCall(PetscFree(gradient));

@@ -7,6 +7,7 @@ PetscErrorCode BareCreate(const LamMicrostructure *micro, LamRVE *out)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve));
+  rve->linear = &rve->systems[0];
   rve->micro = *micro;
   PetscCall(LamMeshCreate(micro, &rve->mesh));
   PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
@@ -14,10 +15,10 @@ PetscErrorCode BareCreate(const LamMicrostructure *micro, LamRVE *out)
   rve->thinnest = micro->wall_thickness;
   rve->stiffest = micro->wall.bulk_modulus + micro->wall.C4;
   PetscCall(LamGeometryCreate(rve));
-  PetscCall(LamLinearCreate(&rve->mesh, NULL, 0, &rve->linear));
+  PetscCall(LamLinearCreate(&rve->mesh, NULL, 0, rve->linear));
   rve->ndof = rve->length = 2 * rve->mesh.class_count;
   PetscCall(PetscCalloc3(rve->ndof, &rve->y, rve->ndof, &rve->step, rve->ndof, &rve->residual));
-  PetscCall(LamLinearCreateMatrix(PETSC_COMM_SELF, &rve->linear));
+  PetscCall(LamLinearCreateMatrix(PETSC_COMM_SELF, rve->linear));
   *out = rve;
   PetscFunctionReturn(0);
 }
@@ -25,7 +26,7 @@ PetscErrorCode BareCreate(const LamMicrostructure *micro, LamRVE *out)
 PetscErrorCode BareDestroy(LamRVE *rve)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamLinearDestroy(&(*rve)->linear));
+  PetscCall(LamLinearDestroy((*rve)->linear));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
   PetscCall(PetscFree((*rve)->law));
   PetscCall(PetscFree((*rve)->geometry));
@@ -38,13 +39,13 @@ PetscErrorCode BareDestroy(LamRVE *rve)
 /* Residual and tangent of the walls. */
 static void BareAssemble(LamRVE rve, const LamLoad *load)
 {
-  PetscReal *values = rve->linear.values;
+  PetscReal *values = rve->linear->values;
 
   PetscArrayzero(rve->residual, rve->ndof);
-  PetscArrayzero(values, rve->linear.nonzeros);
+  PetscArrayzero(values, rve->linear->nonzeros);
   for (PetscInt e = 0; e < rve->mesh.element_count; e++) {
     const PetscInt *nodes = &rve->mesh.elements[LAM_ELEMENT_NODES * e],
-                   *position = &rve->linear.position[LAM_PAIRS * e];
+                   *position = &rve->linear->position[LAM_PAIRS * e];
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
     PetscBool valid;
@@ -75,9 +76,9 @@ static PetscErrorCode BareStep(LamRVE rve, const LamLoad *load, PetscBool *ok)
   PetscInt negative;
 
   PetscFunctionBeginUser;
-  PetscCall(LamLinearFactor(&rve->linear, 0, &negative, ok));
+  PetscCall(LamLinearFactor(rve->linear, 0, &negative, ok));
   *ok = (PetscBool)(*ok && negative == 0);
-  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+  PetscCall(LamLinearSolveOnce(rve->linear, 1, rve->residual + 2, rve->step + 2));
   for (PetscInt i = 2; i < rve->ndof; i++) rve->step[i] = -rve->step[i];
   LamUpdateStresses(rve, load, rve->y, rve->step, still, 1);
   for (PetscInt i = 0; i < rve->ndof; i++) rve->y[i] += rve->step[i];
@@ -140,12 +141,12 @@ PetscErrorCode BareSolve(LamRVE rve, const LamLoad *load, LamResponse *response)
   if (!ok || iteration == BARE_ITERATIONS) PetscFunctionReturn(0);
   ok = LamSetConsistentStresses(rve, load, rve->y);
   BareAssemble(rve, load);
-  PetscCall(LamLinearFactor(&rve->linear, 0, &negative, &ok));
-  PetscCall(LamLinearSolveOnce(&rve->linear, 1, rve->residual + 2, rve->step + 2));
+  PetscCall(LamLinearFactor(rve->linear, 0, &negative, &ok));
+  PetscCall(LamLinearSolveOnce(rve->linear, 1, rve->residual + 2, rve->step + 2));
   BareStress(rve, load, response->P);
   response->status = ok && negative == 0 ? LAM_CONVERGED : LAM_UNSTABLE;
   response->newton_iterations = iteration;
   response->factorisations = iteration + 1;
-  response->unknowns = rve->linear.n;
+  response->unknowns = rve->linear->n;
   PetscFunctionReturn(0);
 }

@@ -29,8 +29,8 @@ static System NewSystem(void)
   assert_int_equal(LamAssemble(s.rve, &s.load, s.rve->y, &energy, s.rve->residual, &valid), 0);
   assert_true(valid);
   LamContactAddCurvature(s.rve);
-  assert_int_equal(PetscMalloc5(s.rve->linear.n, &s.rhs, s.rve->linear.n, &s.first, s.rve->linear.n, &s.updated,
-                                s.rve->linear.n, &s.direct, s.rve->contact->count, &s.before),
+  assert_int_equal(PetscMalloc5(s.rve->linear->n, &s.rhs, s.rve->linear->n, &s.first, s.rve->linear->n, &s.updated,
+                                s.rve->linear->n, &s.direct, s.rve->contact->count, &s.before),
                    0);
   return s;
 }
@@ -46,17 +46,17 @@ static void Destroy(System *s)
 static PetscInt Solve(System *s, PetscReal compliance, PetscReal solution[])
 {
   const LamContact *contact = s->rve->contact;
-  const PetscInt positions = s->rve->linear.positions;
+  const PetscInt positions = s->rve->linear->positions;
   PetscInt negative;
   PetscBool ok;
 
   LamContactSetRows(s->rve, compliance);
-  assert_int_equal(LamLinearFactor(&s->rve->linear, LAM_CONTACT_PROXIMAL, &negative, &ok), 0);
+  assert_int_equal(LamLinearFactor(s->rve->linear, LAM_CONTACT_PROXIMAL, &negative, &ok), 0);
   assert_true(ok);
   for (PetscInt i = 0; i < positions; i++) s->rhs[i] = -s->rve->residual[i + 2];
   for (PetscInt h = 0; h < contact->count; h++)
     s->rhs[positions + h] = contact->active[h] ? contact->gap[h] * contact->weight[h] : 0.0;
-  assert_int_equal(LamLinearSolveOnce(&s->rve->linear, 1, s->rhs, solution), 0);
+  assert_int_equal(LamLinearSolveOnce(s->rve->linear, 1, s->rhs, solution), 0);
   return negative;
 }
 
@@ -82,7 +82,7 @@ static void ChangeSet(const System *s, int dropped, int taken)
 static void AssertUpdates(int dropped, int taken, PetscReal compliance)
 {
   System s = NewSystem();
-  const PetscInt n = s.rve->linear.n;
+  const PetscInt n = s.rve->linear->n;
   PetscReal size;
   PetscBool ok;
 

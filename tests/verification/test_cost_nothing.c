@@ -35,8 +35,8 @@ static void Destroy(Solved *s)
 /* The same matrix and work, and the same solution, bit for bit. */
 static void AssertSameProblem(const Solved *a, const Solved *b)
 {
-  assert_int_equal(a->rve->linear.n, b->rve->linear.n);
-  assert_int_equal(a->rve->linear.nonzeros, b->rve->linear.nonzeros);
+  assert_int_equal(a->rve->linear->n, b->rve->linear->n);
+  assert_int_equal(a->rve->linear->nonzeros, b->rve->linear->nonzeros);
   assert_int_equal(a->response.newton_iterations, b->response.newton_iterations);
   assert_int_equal(a->response.factorisations, b->response.factorisations);
   assert_int_equal(a->state->n, b->state->n);
@@ -81,8 +81,8 @@ TEST(BondedTissueHasTheMatrixOfItsWalls)
     micro.cells[1] = cells[k][1];
     micro.along = 3;
     rve = NewRVE(&micro);
-    assert_int_equal(rve->linear.n, 2 * (rve->mesh.class_count - 1));
-    assert_int_equal(rve->linear.nonzeros, 4 * CountPairs(&rve->mesh) - (rve->mesh.class_count - 1));
+    assert_int_equal(rve->linear->n, 2 * (rve->mesh.class_count - 1));
+    assert_int_equal(rve->linear->nonzeros, 4 * CountPairs(&rve->mesh) - (rve->mesh.class_count - 1));
     assert_null(rve->contact);
     assert_null(rve->bonded);
   }
@@ -99,8 +99,8 @@ TEST(SolvesAsWallsAloneDo)
   assert_int_equal(BareCreate(&micro, &bare), 0);
   assert_int_equal(BareSolve(bare, &load, &response), 0);
   assert_int_equal(response.status, LAM_CONVERGED);
-  assert_int_equal(s.rve->linear.n, bare->linear.n);
-  assert_int_equal(s.rve->linear.nonzeros, bare->linear.nonzeros);
+  assert_int_equal(s.rve->linear->n, bare->linear->n);
+  assert_int_equal(s.rve->linear->nonzeros, bare->linear->nonzeros);
   assert_true(s.response.newton_iterations <= response.newton_iterations);
   assert_true(s.response.factorisations <= response.factorisations);
   for (PetscInt i = 0; i < bare->ndof; i++) assert_true(fabs(s.state->y[i] - bare->y[i]) < 1e-12);
@@ -155,7 +155,7 @@ TEST(OnlySealableLumensHaveUnknowns)
   micro.cells[0] = 2;
   open = NewRVE(&micro);
   sealable = NewSealable(&micro);
-  assert_int_equal(open->linear.n + 2, sealable->linear.n);
+  assert_int_equal(open->linear->n + 2, sealable->linear->n);
   assert_int_equal(open->length + 2, sealable->length);
   assert_int_equal(LamRVEDestroy(&open), 0);
   assert_int_equal(LamRVEDestroy(&sealable), 0);

@@ -223,7 +223,7 @@ TEST(EachPressureHasItsNegativeEigenvalue)
 
   assert_true(response.stable);
   assert_int_equal(response.negative_eigenvalues, 0);
-  assert_int_equal(LamLinearFactor(&s.rve->linear, 0.0, &negative, &ok), 0);
+  assert_int_equal(LamLinearFactor(s.rve->linear, 0.0, &negative, &ok), 0);
   assert_int_equal(negative, 2);
 }
 
