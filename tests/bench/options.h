@@ -17,6 +17,16 @@ static inline int NumberOption(const char name[], PetscInt usual, PetscInt least
   exit(1);
 }
 
+/* The place in `names`, of which there are n, of the word behind an option; n without the option. */
+static inline int ChoiceOption(const char name[], const char *const names[], int n)
+{
+  PetscInt choice = n;
+  PetscBool has;
+
+  PetscCallAbort(PETSC_COMM_SELF, PetscOptionsGetEList(NULL, NULL, name, names, n, &choice, &has));
+  return (int)choice;
+}
+
 static inline PetscBool HasOption(const char name[])
 {
   PetscBool has;
