@@ -2,12 +2,14 @@
   Contact tissue in simple shear from F = I: the two-step against the one-step strategy, and both against bonded tissue
   on the same mesh; prints figures, asserts nothing.
 
-    bench_contact [--full] [--repeats N]
+    bench_contact [--full] [--repeats N] [--random N]
       --full        also 288 elements, and the error of the stress against 24 x 8 elements a face; takes minutes
       --repeats N   solves of each state, of which the median time counts; default 1
+      --random N    also both strategies at the first N states of the boxes "asked" and "wide" of
+                    support/random_contact.h, 72 elements, seed 1; default 0
 */
 #include <stdio.h>
-#include "support/contact_tissue.h"
+#include "support/random_contact.h"
 #include "options.h"
 #include "measure.h"
 
@@ -56,10 +58,8 @@ static int ListCases(Case list[CASES])
   return n;
 }
 
-static PetscErrorCode TissueCreate(int along, int through, Way way, Tissue *tissue)
+static PetscErrorCode TissueCreate(LamMicrostructure micro, Way way, Tissue *tissue)
 {
-  LamMicrostructure micro = ContactTissue(along, through);
-
   PetscFunctionBeginUser;
   if (way == BONDED) micro.interface = LAM_INTERFACE_BONDED;
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &tissue->rve));
@@ -88,7 +88,7 @@ static PetscErrorCode AddReferences(int n, Case list[])
   Tissue tissue;
 
   PetscFunctionBeginUser;
-  PetscCall(TissueCreate(24, 8, TWO_STEP, &tissue));
+  PetscCall(TissueCreate(ContactTissue(24, 8), TWO_STEP, &tissue));
   for (int k = 0; k < n; k++) {
     LamResponse response;
 
@@ -128,11 +128,34 @@ static PetscErrorCode MeasureMesh(int mesh, int repeats, int n, Case list[])
   for (int w = 0; w < WAYS; w++) {
     LamResponse warm;
 
-    PetscCall(TissueCreate(meshes[mesh][0], meshes[mesh][1], (Way)w, &tissue[w]));
+    PetscCall(TissueCreate(ContactTissue(meshes[mesh][0], meshes[mesh][1]), (Way)w, &tissue[w]));
     PetscCall(Solve(&tissue[w], &list[n - 1].load, &warm));
   }
   for (int k = 0; k < n; k++) PetscCall(MeasureCase(tissue, repeats, &list[k], list[k].result[mesh]));
   for (int w = 0; w < WAYS; w++) PetscCall(DestroyTissue(&tissue[w].rve, &tissue[w].state));
+  PetscFunctionReturn(0);
+}
+
+/* Both strategies, on meshes[0]. */
+static PetscErrorCode MeasureRandom(ContactBox box, int n, Case list[])
+{
+  uint64_t seed = 1;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < n; k++) {
+    const RandomContact sample = DrawContact(box, k, meshes[0][0], meshes[0][1], &seed);
+
+    list[k] = (Case){.turgor = sample.turgor, .cohesion = sample.cohesion, .load = sample.load};
+    for (int w = TWO_STEP; w <= ONE_STEP; w++) {
+      Result *result = &list[k].result[0][w];
+      Tissue tissue;
+
+      PetscCall(TissueCreate(sample.micro, (Way)w, &tissue));
+      PetscCall(Solve(&tissue, &sample.load, &result->response));
+      *result = (Result){.response = result->response, .ms = 1e3 * result->response.seconds, .error = NAN};
+      PetscCall(DestroyTissue(&tissue.rve, &tissue.state));
+    }
+  }
   PetscFunctionReturn(0);
 }
 
@@ -184,66 +207,107 @@ static void PrintStates(int mesh, int n, const Case list[])
 
 /* States that are looked at together. */
 typedef struct {
-  PetscBool pressed; /* p + g > 0 */
-  double most_shear;
+  const char *name;
+  double least_pressure, most_pressure, most_shear;
 } Group;
 
-static const Group groups[] = {{PETSC_TRUE, 0.3}, {PETSC_TRUE, 0.5}, {PETSC_FALSE, 0.3}, {PETSC_FALSE, 0.5}};
+static const Group groups[] = {
+    {"p + g > 0, shear to 0.3", 1e-9, 1.0, 0.3}, {"p + g > 0, shear to 0.5", 1e-9, 1.0, 0.5},
+    {"p + g = 0, shear to 0.3", 0.0, 0.0, 0.3},  {"p + g = 0, shear to 0.5", 0.0, 0.0, 0.5},
+    {"all, shear to 0.5", 0.0, 1.0, 0.5},
+};
 
 static PetscBool IsIn(const Group *group, const Case *c)
 {
-  return (PetscBool)((c->turgor + c->cohesion > 0.0) == group->pressed && c->shear <= group->most_shear);
+  const double pressure = c->turgor + c->cohesion;
+
+  return (PetscBool)(pressure >= group->least_pressure && pressure <= group->most_pressure &&
+                     c->shear <= group->most_shear);
 }
 
 static void PrintGroup(int mesh, const Group *group)
 {
-  printf("%-9d %-6s %-6g ", Elements(mesh), group->pressed ? "> 0" : "0", group->most_shear);
+  printf("%-9d %-24s", Elements(mesh), group->name);
 }
 
-typedef struct {
-  double iterations, factorisations, ms, error;
-  int states, solved, counted, with_error, same;
-} Sum;
-
-/* Sums over the states that both strategies solve; `solved` counts all of this strategy's. */
-static Sum SumUp(int mesh, Way way, const Group *group, int n, const Case list[])
+static void PrintSpread(double values[], int n)
 {
-  Sum sum = {0};
+  printf("  %6.1f %6.1f %6.1f ", Quantile(values, n, 0.5), Quantile(values, n, 0.9), Quantile(values, n, 1.0));
+}
 
+/* Values of a strategy at the states that both solve, [counted]; solved, seconds: of all its states. */
+typedef struct {
+  double *iterations, *factorisations, *ms, error, seconds; /* owned; error: sum */
+  int states, solved, counted, with_error, same;
+} Comparison;
+
+static void Compare(int mesh, Way way, const Group *group, int n, const Case list[], Comparison *sum)
+{
   for (int k = 0; k < n; k++) {
     const Result *both = list[k].result[mesh], *result = &both[way];
 
     if (!IsIn(group, &list[k])) continue;
-    sum.states++;
-    sum.solved += IsSolved(&result->response);
+    sum->states++;
+    sum->solved += IsSolved(&result->response);
+    sum->seconds += 1e-3 * result->ms;
     if (!IsSolved(&both[TWO_STEP].response) || !IsSolved(&both[ONE_STEP].response)) continue;
-    sum.counted++;
-    sum.same += Difference(both) < SAME;
-    sum.iterations += result->response.newton_iterations;
-    sum.factorisations += result->response.factorisations;
-    sum.ms += result->ms;
+    sum->same += Difference(both) < SAME;
+    sum->iterations[sum->counted] = result->response.newton_iterations;
+    sum->factorisations[sum->counted] = result->response.factorisations;
+    sum->ms[sum->counted++] = result->ms;
     if (isnan(result->error)) continue;
-    sum.with_error++;
-    sum.error += result->error;
+    sum->with_error++;
+    sum->error += result->error;
   }
-  return sum;
 }
 
-static void PrintStrategies(int used_meshes, int n, const Case list[])
+static PetscErrorCode PrintComparison(int mesh, const Group *group, int n, const Case list[])
 {
-  printf("\nmeans over the states that both strategies solve; same: stress equal to %g\n"
-         "elements  p + g  shear  strategy  solved    iterations  factorisations  ms      error (%%)  same\n",
-         SAME);
-  for (int mesh = 0; mesh < used_meshes; mesh++)
-    for (int g = 0; g < COUNT(groups); g++)
-      for (int way = TWO_STEP; way <= ONE_STEP; way++) {
-        const Sum s = SumUp(mesh, (Way)way, &groups[g], n, list);
+  PetscFunctionBeginUser;
+  for (int way = TWO_STEP; way <= ONE_STEP; way++) {
+    Comparison c = {0};
 
-        PrintGroup(mesh, &groups[g]);
-        printf("%-9s %2d of %-3d %-11.1f %-15.1f %-7.1f %-10.3f %d of %d\n", way_names[way], s.solved, s.states,
-               s.iterations / s.counted, s.factorisations / s.counted, s.ms / s.counted,
-               s.with_error ? 100.0 * s.error / s.with_error : NAN, s.same, s.counted);
-      }
+    PetscCall(PetscMalloc3(n, &c.iterations, n, &c.factorisations, n, &c.ms));
+    Compare(mesh, (Way)way, group, n, list, &c);
+    PrintGroup(mesh, group);
+    printf("%-9s %3d of %-4d", way_names[way], c.solved, c.states);
+    PrintSpread(c.iterations, c.counted);
+    PrintSpread(c.factorisations, c.counted);
+    PrintSpread(c.ms, c.counted);
+    printf("  %-7.2f %-9.3f  %d of %d\n", c.seconds, c.with_error ? 100.0 * c.error / c.with_error : NAN, c.same,
+           c.counted);
+    PetscCall(PetscFree3(c.iterations, c.factorisations, c.ms));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintRandom(ContactBox box, int n)
+{
+  const Group all = {contact_box_names[box], 0.0, 1.0, 0.0};
+  Case *list;
+
+  PetscFunctionBeginUser;
+  if (n == 0) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(n, &list));
+  PetscCall(MeasureRandom(box, n, list));
+  PetscCall(PrintComparison(0, &all, n, list));
+  PetscCall(PetscFree(list));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PrintStrategies(int used_meshes, int n, const Case list[], int random)
+{
+  PetscFunctionBeginUser;
+  printf("\nmedian, 90 %%, largest of the states that both strategies solve, and mean error; s: of all states;\n"
+         "same: stress equal to %g\n"
+         "elements  %-24sstrategy  solved       iterations              factorisations          ms                    "
+         "  s       error (%%)  same\n",
+         SAME, "states");
+  for (int mesh = 0; mesh < used_meshes; mesh++)
+    for (int g = 0; g < COUNT(groups); g++) PetscCall(PrintComparison(mesh, &groups[g], n, list));
+  PetscCall(PrintRandom(BOX_ASKED, random));
+  PetscCall(PrintRandom(BOX_WIDE, random));
+  PetscFunctionReturn(0);
 }
 
 /* ---- contact against bonded ---- */
@@ -268,17 +332,11 @@ static void CollectCosts(int mesh, const Group *group, int n, const Case list[],
   }
 }
 
-static void PrintSpread(double values[], int n)
-{
-  printf("  %6.1f %6.1f %6.1f ", Quantile(values, n, 0.5), Quantile(values, n, 0.9), Quantile(values, n, 1.0));
-}
-
 static void PrintCosts(int used_meshes, int n, const Case list[])
 {
-  printf(
-      "\ntwo_step against bonded on the same mesh; each: median, 90 %%, largest\n"
-      "elements  p + g  shear  states  iterations              from bonded             factorisations, ratio   time, "
-      "ratio\n");
+  printf("\ntwo_step against bonded on the same mesh; each: median, 90 %%, largest\n"
+         "elements  %-24sstates  iterations              from bonded             factorisations, ratio   time, ratio\n",
+         "states");
   for (int mesh = 0; mesh < used_meshes; mesh++)
     for (int g = 0; g < COUNT(groups); g++) {
       Costs costs;
@@ -294,7 +352,7 @@ static void PrintCosts(int used_meshes, int n, const Case list[])
     }
 }
 
-static PetscErrorCode Run(int repeats, PetscBool full)
+static PetscErrorCode Run(int repeats, PetscBool full, int random)
 {
   static Case list[CASES];
   const int n = ListCases(list), used_meshes = full ? MESHES : 1;
@@ -306,7 +364,7 @@ static PetscErrorCode Run(int repeats, PetscBool full)
     PetscCall(MeasureMesh(mesh, repeats, n, list));
     PrintStates(mesh, n, list);
   }
-  PrintStrategies(used_meshes, n, list);
+  PetscCall(PrintStrategies(used_meshes, n, list, random));
   PrintCosts(used_meshes, n, list);
   PetscFunctionReturn(0);
 }
@@ -314,6 +372,7 @@ static PetscErrorCode Run(int repeats, PetscBool full)
 int main(int argc, char **argv)
 {
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  if (Run(NumberOption("--repeats", 1, 1, REPEATS_MAX), HasOption("--full"))) return 1;
+  if (Run(NumberOption("--repeats", 1, 1, REPEATS_MAX), HasOption("--full"), NumberOption("--random", 0, 0, 100000)))
+    return 1;
   return EndBench();
 }
