@@ -207,6 +207,21 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamFactorExpected(LamFactor factor, PetscInt expected, PetscBool *ok)
+{
+  PetscInt negative;
+
+  PetscFunctionBeginUser;
+  if (factor->cholesky && expected == 0) {
+    PetscCall(LamCholeskyNumeric(factor->cholesky, &factor->definite));
+    *ok = factor->definite;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamFactorNumeric(factor, &negative, ok));
+  *ok = (PetscBool)(*ok && negative == expected);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
   Mat B, X;

@@ -18,6 +18,8 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
 /* Factors the present values. *ok is PETSC_FALSE if the matrix is singular to working precision. *negative: number of
    negative eigenvalues. */
 PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok);
+/* *ok: the present values have `expected` negative eigenvalues, and are factored; otherwise there may be no factor. */
+PetscErrorCode LamFactorExpected(LamFactor factor, PetscInt expected, PetscBool *ok);
 /* solution = K^-1 rhs, arrays of length n; count right-hand sides, one after the other. */
 PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 PetscErrorCode LamFactorDestroy(LamFactor *factor);

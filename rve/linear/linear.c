@@ -46,7 +46,8 @@ static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplin
   pairs->classes = mesh->class_count;
   pairs->couplings = couplings->count;
   pairs->groups = pairs->classes + pairs->couplings + lumens;
-  PetscCall(PetscMalloc1(mesh->element_count * 45 + couplings->count * (size + 1) * (size + 2) / 2 + inner + lumens,
+  PetscCall(PetscMalloc1(mesh->element_count * 45 + couplings->count * (size + 1) * (size + 2) / 2 + inner + lumens +
+                             couplings->pair_count,
                          &pairs->key));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
     PetscInt members[LAM_ELEMENT_NODES];
@@ -59,6 +60,8 @@ static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplin
     AddClique(size, &couplings->classes[g * size], pairs);
     for (PetscInt i = 0; i < size; ++i) AddCoupled(couplings->classes[g * size + i], pairs->classes + g, pairs);
   }
+  for (PetscInt k = 0; k < couplings->pair_count; ++k)
+    AddCoupled(couplings->pairs[k][0], couplings->pairs[k][1], pairs);
   for (PetscInt i = 0; i < inner && lumens; ++i)
     AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + i / mesh->ring_nodes, pairs);
   for (PetscInt g = pairs->classes; g < pairs->groups; ++g) AddCoupled(g, g, pairs);
@@ -179,15 +182,31 @@ PetscErrorCode LamLinearDestroy(LamLinear *linear)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok)
+/* Call before and after a factorisation. */
+static void Shift(LamLinear *linear, PetscReal shift)
 {
-  PetscFunctionBeginUser;
   linear->nearby = PETSC_FALSE;
   linear->rate = PETSC_INFINITY;
   for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] += shift;
+}
+
+PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  Shift(linear, shift);
   PetscCall(LamFactorNumeric(linear->factor, negative, ok));
   linear->negative = *negative;
-  for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] -= shift;
+  Shift(linear, -shift);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLinearFactorExpected(LamLinear *linear, PetscReal shift, PetscInt expected, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  Shift(linear, shift);
+  PetscCall(LamFactorExpected(linear->factor, expected, ok));
+  linear->negative = expected;
+  Shift(linear, -shift);
   PetscFunctionReturn(0);
 }
 

@@ -10,10 +10,12 @@
 #define LAM_PAIRS (LAM_ELEMENT_DOFS * (LAM_ELEMENT_DOFS + 1) / 2)
 
 /* Couplings of classes beyond elements: `count` sets of `size` classes; each set has `multipliers` unknowns of its own.
- */
+   Also single pairs of classes. */
 typedef struct {
   PetscInt count, size, multipliers;
   const PetscInt *classes; /* [count][size] */
+  PetscInt pair_count;
+  const PetscInt (*pairs)[2]; /* [pair_count] */
 } LamCouplings;
 
 /*
@@ -39,11 +41,19 @@ typedef struct {
 PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear);
 /* Index into values of the entry of unknowns i and j, which must be coupled; -1 if one of them is negative. */
 PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j);
+/* Whether that entry exists. */
+static inline PetscBool LamLinearHas(const LamLinear *linear, PetscInt entry, PetscInt i, PetscInt j)
+{
+  return (PetscBool)(linear->column[entry] == PetscMax(i, j));
+}
 PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear); /* needs PETSc; the rest above does not */
 PetscErrorCode LamLinearDestroy(LamLinear *linear);
 /* Factors values + shift times the identity (on positions). *ok is PETSC_FALSE if the matrix is singular to working
    precision. */
 PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *negative, PetscBool *ok);
+/* The same if the matrix then has `expected` negative eigenvalues; otherwise *ok is PETSC_FALSE, and there may be no
+   factor. Cheaper than LamLinearFactor where it has not. */
+PetscErrorCode LamLinearFactorExpected(LamLinear *linear, PetscReal shift, PetscInt expected, PetscBool *ok);
 /* solution = K^-1 rhs with the last factor, arrays of length n; count right-hand sides, one after the other. */
 PetscErrorCode LamLinearSolveOnce(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 /* As LamLinearSolveOnce, for a factor that may be of a nearby matrix: refines until rest = rhs - K solution is small,
