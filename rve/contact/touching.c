@@ -1,0 +1,283 @@
+#include "touching.h"
+
+#define DEEPEST 0.25 /* apothems: deeper points belong to another wall; above the longest step of the solver */
+
+static void ListNodes(const LamMesh *mesh, LamWalls *walls)
+{
+  for (PetscInt loop = 0; loop < walls->loops; ++loop)
+    for (PetscInt i = 0; i < walls->nodes; ++i) {
+      const PetscInt cell = loop / 2, back = (walls->nodes - i) % walls->nodes;
+
+      walls->node[loop * walls->nodes + i] =
+          loop % 2 ? (cell * mesh->ring_nodes + back) * mesh->radial_nodes : LamMeshOuterNode(mesh, cell, i);
+    }
+}
+
+/* Reference lengths of the points, from the contour of the reference positions. */
+static void Weigh(const LamMesh *mesh, LamWalls *walls)
+{
+  for (PetscInt k = 0; k < walls->loops * walls->nodes; ++k)
+    for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
+      PetscReal c[LAM_SPAN][2], tau[2];
+
+      for (PetscInt a = 0; a < LAM_SPAN; ++a)
+        for (PetscInt d = 0; d < 2; ++d)
+          c[a][d] = mesh->X[2 * LamWallsControl(walls, k / walls->nodes, k % walls->nodes, a) + d];
+      LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
+      walls->weight[LAM_TOUCH_POINTS * k + q] = PetscSqrtReal(tau[0] * tau[0] + tau[1] * tau[1]) / LAM_TOUCH_POINTS;
+    }
+}
+
+PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamWalls *walls)
+{
+  PetscInt all;
+
+  PetscFunctionBeginUser;
+  *walls = (LamWalls){.mesh = mesh, .loops = 2 * mesh->cell_count, .nodes = mesh->ring_nodes};
+  walls->is_patch = micro->is_patch;
+  walls->apart = PetscMax(3, mesh->along);
+  all = walls->loops * walls->nodes;
+  PetscCall(PetscMalloc4(all, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight, mesh->cell_count, &walls->thickness,
+                         all, &walls->x));
+  PetscCall(PetscMalloc5(LAM_TOUCH_POINTS * all, &walls->point, all, &walls->knot, all, &walls->tau, walls->loops,
+                         &walls->box, all, &walls->hull));
+  for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = PetscMin(DEEPEST, LamWallThickness(micro, c));
+  for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
+    LamSplineWeightsAt(((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, &walls->at[q]);
+  ListNodes(mesh, walls);
+  Weigh(mesh, walls);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamWallsDestroy(LamWalls *walls)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(walls->node, walls->weight, walls->thickness, walls->x));
+  PetscCall(PetscFree5(walls->point, walls->knot, walls->tau, walls->box, walls->hull));
+  PetscFunctionReturn(0);
+}
+
+static void Widen(LamBox *box, const PetscReal x[2])
+{
+  for (PetscInt d = 0; d < 2; ++d) {
+    box->low[d] = PetscMin(box->low[d], x[d]);
+    box->high[d] = PetscMax(box->high[d], x[d]);
+  }
+}
+
+static inline PetscBool AreNear(const LamBox *a, const LamBox *b, const PetscReal shift[2], PetscReal reach)
+{
+  return (PetscBool)(a->low[0] <= b->high[0] + shift[0] + reach && b->low[0] + shift[0] <= a->high[0] + reach &&
+                     a->low[1] <= b->high[1] + shift[1] + reach && b->low[1] + shift[1] <= a->high[1] + reach);
+}
+
+static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
+{
+  const PetscInt n = walls->nodes;
+
+  for (PetscInt a = 0; a < LAM_SPAN; ++a) {
+    const PetscInt i = span + a - 1, k = loop * n + (i < 0 ? i + n : i >= n ? i - n : i);
+
+    c[a][0] = walls->x[k][0];
+    c[a][1] = walls->x[k][1];
+  }
+}
+
+void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
+{
+  static const LamBox nothing = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
+  const LamMesh *mesh = walls->mesh;
+  LamSplineWeights start;
+
+  LamSplineWeightsAt(0.0, &start);
+  (void)PetscArraycpy(walls->F, F, 9);
+  for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    walls->box[loop] = nothing;
+    for (PetscInt i = 0; i < walls->nodes; ++i) {
+      const PetscInt k = loop * walls->nodes + i, node = walls->node[k];
+
+      LamImagePosition(F, y, mesh->node_class[node], &mesh->shift[2 * node], walls->x[k]);
+      Widen(&walls->box[loop], walls->x[k]);
+    }
+    for (PetscInt i = 0; i < walls->nodes; ++i) {
+      const PetscInt k = loop * walls->nodes + i;
+      PetscReal c[LAM_SPAN][2];
+
+      GatherSpan(walls, loop, i, c);
+      walls->hull[k] = nothing;
+      for (PetscInt a = 0; a < LAM_SPAN; ++a) Widen(&walls->hull[k], c[a]);
+      LamSplineSum(start.N, (const PetscReal(*)[2])c, walls->knot[k]);
+      LamSplineSum(start.dN, (const PetscReal(*)[2])c, walls->tau[k]);
+      for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
+        LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, walls->point[LAM_TOUCH_POINTS * k + q]);
+    }
+  }
+}
+
+/* Two loops, the second in an image. */
+typedef struct {
+  const LamWalls *walls;
+  PetscReal width, reach;
+  PetscInt loop, other;
+  PetscBool itself;             /* the same loop, not an image of it */
+  PetscReal shift[2], moved[2]; /* S and F S of the image */
+  LamTouchVisitor visitor;
+  void *ctx;
+} Pair;
+
+/* Distance of two spans of a loop, in nodes. */
+static inline PetscInt Between(PetscInt nodes, PetscInt i, PetscInt j)
+{
+  const PetscInt d = i > j ? i - j : j - i;
+
+  return PetscMin(d, nodes - d);
+}
+
+/* Whether the normals of a point's own wall and of the one that it is near to are opposed. */
+static PetscBool AreOpposed(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt q, const LamTouchGap *gap)
+{
+  PetscReal c[LAM_SPAN][2], tau[2];
+
+  GatherSpan(walls, loop, span, c);
+  LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
+  return (PetscBool)(tau[1] * gap->normal[0] - tau[0] * gap->normal[1] < 0.0);
+}
+
+/* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
+   same cell; in another cell it may have come through from the opposite wall, whose normal is then not opposed. */
+static PetscBool Counts(const Pair *p, PetscInt span, PetscInt q, const LamTouchGap *gap)
+{
+  if (!(gap->gap < p->width)) return PETSC_FALSE;
+  if (gap->gap >= -p->walls->thickness[p->other / 2]) return PETSC_TRUE;
+  return (PetscBool)(!p->itself && gap->gap >= -DEEPEST && AreOpposed(p->walls, p->loop, span, q, gap));
+}
+
+/* Points of one span against one span of the other loop. */
+static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
+{
+  const LamWalls *walls = p->walls;
+  const PetscInt n = walls->nodes, k = p->other * n + j, next = p->other * n + (j + 1 == n ? 0 : j + 1);
+  PetscReal c[LAM_SPAN][2];
+  PetscBool gathered = PETSC_FALSE;
+  LamTouching touch;
+
+  for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
+    const PetscInt at = LAM_TOUCH_POINTS * (p->loop * n + i) + q;
+    const PetscReal X[2] = {walls->point[at][0] - p->moved[0], walls->point[at][1] - p->moved[1]};
+
+    if (!((X[0] - walls->knot[k][0]) * walls->tau[k][0] + (X[1] - walls->knot[k][1]) * walls->tau[k][1] > 0.0) ||
+        (X[0] - walls->knot[next][0]) * walls->tau[next][0] + (X[1] - walls->knot[next][1]) * walls->tau[next][1] > 0.0)
+      continue;
+    if (!gathered) GatherSpan(walls, p->other, j, c);
+    gathered = PETSC_TRUE;
+    LamTouchGapAt((const PetscReal(*)[2])c, X, LamSplineClosest((const PetscReal(*)[2])c, X), &touch.gap);
+    if (!Counts(p, i, q, &touch.gap)) continue;
+    touch.loop = p->loop;
+    touch.span = i;
+    touch.point = q;
+    touch.other = p->other;
+    touch.at = j;
+    touch.shift[0] = p->shift[0];
+    touch.shift[1] = p->shift[1];
+    touch.weight = walls->weight[at];
+    p->visitor(p->ctx, &touch);
+  }
+}
+
+static void VisitLoops(const Pair *p)
+{
+  const LamWalls *walls = p->walls;
+  const PetscInt n = walls->nodes;
+  static const PetscReal none[2] = {0.0, 0.0};
+
+  for (PetscInt i = 0; i < n; ++i) {
+    const LamBox *hull = &walls->hull[p->loop * n + i];
+    LamBox here;
+
+    if (!AreNear(hull, &walls->box[p->other], p->moved, p->reach)) continue;
+    for (PetscInt d = 0; d < 2; ++d) {
+      here.low[d] = hull->low[d] - p->moved[d] - p->reach;
+      here.high[d] = hull->high[d] - p->moved[d] + p->reach;
+    }
+    for (PetscInt j = 0; j < n; ++j)
+      if (AreNear(&here, &walls->hull[p->other * n + j], none, 0.0) && !(p->itself && Between(n, i, j) < walls->apart))
+        VisitSpans(p, i, j);
+  }
+}
+
+/* Range of the images, in periods, whose box may lie near that of the loop. */
+static void FindImages(const Pair *p, PetscInt range[2][2])
+{
+  const LamWalls *walls = p->walls;
+  const LamBox *a = &walls->box[p->loop], *b = &walls->box[p->other];
+  PetscReal M[2][2], det;
+
+  range[0][0] = range[0][1] = range[1][0] = range[1][1] = 0;
+  if (walls->is_patch || p->loop % 2) return;
+  for (PetscInt k = 0; k < 2; ++k)
+    for (PetscInt d = 0; d < 2; ++d)
+      M[d][k] = walls->F[3 * d] * walls->mesh->period[k][0] + walls->F[3 * d + 1] * walls->mesh->period[k][1];
+  det = M[0][0] * M[1][1] - M[0][1] * M[1][0];
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscReal row[2] = {(k ? -M[1][0] : M[1][1]) / det, (k ? M[0][0] : -M[0][1]) / det};
+    PetscReal low = 0.0, high = 0.0;
+
+    for (PetscInt d = 0; d < 2; ++d) {
+      const PetscReal ends[2] = {row[d] * (a->low[d] - b->high[d] - p->reach),
+                                 row[d] * (a->high[d] - b->low[d] + p->reach)};
+
+      low += PetscMin(ends[0], ends[1]);
+      high += PetscMax(ends[0], ends[1]);
+    }
+    range[k][0] = (PetscInt)PetscCeilReal(low);
+    range[k][1] = (PetscInt)PetscFloorReal(high);
+  }
+}
+
+/* All images of one loop near another. */
+static void VisitImages(Pair *p)
+{
+  const LamWalls *walls = p->walls;
+  const LamMesh *mesh = walls->mesh;
+  PetscInt range[2][2];
+
+  p->reach = PetscMax(p->width, p->loop % 2 ? walls->thickness[p->other / 2] : DEEPEST);
+  FindImages(p, range);
+  for (PetscInt i = range[0][0]; i <= range[0][1]; ++i)
+    for (PetscInt j = range[1][0]; j <= range[1][1]; ++j) {
+      p->itself = (PetscBool)(p->loop == p->other && i == 0 && j == 0);
+      for (PetscInt d = 0; d < 2; ++d)
+        p->shift[d] = (PetscReal)i * mesh->period[0][d] + (PetscReal)j * mesh->period[1][d];
+      for (PetscInt d = 0; d < 2; ++d) p->moved[d] = walls->F[3 * d] * p->shift[0] + walls->F[3 * d + 1] * p->shift[1];
+      if (AreNear(&walls->box[p->loop], &walls->box[p->other], p->moved, p->reach)) VisitLoops(p);
+    }
+}
+
+void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visitor, void *ctx)
+{
+  Pair p = {.walls = walls, .width = width, .visitor = visitor, .ctx = ctx};
+
+  for (p.loop = 0; p.loop < walls->loops; ++p.loop)
+    for (p.other = p.loop % 2 ? p.loop : 0; p.other < walls->loops; p.other += p.loop % 2 ? walls->loops : 2)
+      VisitImages(&p);
+}
+
+PetscBool LamTouchIsFacing(const LamWalls *walls, const LamTouching *touch)
+{
+  const LamMesh *mesh = walls->mesh;
+  const PetscInt per_face = 2 * mesh->along, cell = touch->loop / 2, face = touch->span / per_face;
+  const PetscInt within = touch->span % per_face; /* at a corner, also the face across it */
+  const PetscInt neighbour = within == 0              ? (face + LAM_FACES - 1) % LAM_FACES
+                             : within == per_face - 1 ? (face + 1) % LAM_FACES
+                                                      : face;
+  const PetscInt faces[2] = {face, neighbour};
+
+  if (LamTouchIsLumen(touch)) return PETSC_FALSE;
+  for (PetscInt k = 0; k < 2; ++k) {
+    const PetscReal *image;
+
+    if (LamMeshNeighbour(mesh, cell, faces[k], &image) != touch->other / 2) continue;
+    if (PetscAbsReal(image[0] - touch->shift[0]) + PetscAbsReal(image[1] - touch->shift[1]) < 1e-6) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}

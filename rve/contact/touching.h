@@ -1,0 +1,70 @@
+/*
+  Walls that are near each other: every outer wall against every image of every cell's outer walls, and the walls of a
+  lumen against each other.
+
+  Each cell has two contours (smooth.h) whose control points are nodes of the mesh: its outer walls, counter-clockwise,
+  and its lumen, clockwise, so that the outward side of both is outside the wall. Points of a contour are spread evenly,
+  LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each point is held against all contours, and
+  each pair of walls is met from both sides, with half the potential each.
+*/
+#ifndef LAM_RVE_TOUCHING_H
+#define LAM_RVE_TOUCHING_H
+
+#include <lamella/scene.h>
+#include "mesh.h"
+#include "smooth.h"
+
+#define LAM_TOUCH_POINTS 6 /* per span: 3 leave a ripple in the tangent, more change little (docs/theory/contact.md)   \
+                            */
+
+typedef struct {
+  PetscReal low[2], high[2];
+} LamBox;
+
+typedef struct {
+  const LamMesh *mesh;                   /* borrowed */
+  PetscInt loops, nodes;                 /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; nodes of a loop */
+  PetscBool is_patch;                    /* no images */
+  PetscInt apart;                        /* least distance of points of one loop that may touch, in nodes */
+  PetscInt *node;                        /* [loop][node] nodes of the mesh */
+  PetscReal *weight;                     /* [loop][span][point] reference length */
+  PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
+  LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
+  /* of the positions last placed */
+  PetscReal (*x)[2];               /* [loop][node] */
+  PetscReal (*point)[2];           /* [loop][span][point] */
+  PetscReal (*knot)[2], (*tau)[2]; /* [loop][span] start of the span and tangent there */
+  LamBox *box, *hull;              /* [loop], [loop][span] */
+  PetscReal F[9];
+} LamWalls;
+
+PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamWalls *walls);
+PetscErrorCode LamWallsDestroy(LamWalls *walls);
+/* Takes the positions of a state. */
+void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[]);
+
+/* A point of a wall near another wall, whose gap is below the width. */
+typedef struct {
+  PetscInt loop, span, point; /* of the point */
+  PetscInt other, at;         /* loop and span that it is near to, ... */
+  PetscReal shift[2];         /* ... in the image at F shift */
+  PetscReal weight;           /* reference length of the point */
+  LamTouchGap gap;
+} LamTouching;
+typedef void (*LamTouchVisitor)(void *ctx, const LamTouching *touch);
+/* Calls the visitor for all such points; those of the same two spans follow each other. */
+void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visitor, void *ctx);
+
+/* Mesh node of control point k = 0..3 of a span. */
+static inline PetscInt LamWallsControl(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt k)
+{
+  return walls->node[loop * walls->nodes + (span + k - 1 + walls->nodes) % walls->nodes];
+}
+static inline PetscBool LamTouchIsLumen(const LamTouching *touch)
+{
+  return (PetscBool)(touch->loop % 2 == 1);
+}
+/* Whether the two walls face each other in the undeformed tissue. */
+PetscBool LamTouchIsFacing(const LamWalls *walls, const LamTouching *touch);
+
+#endif
