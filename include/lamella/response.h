@@ -62,6 +62,11 @@ typedef struct {
   PetscReal min_gap;                      /* smallest gap if no walls touch; else 0; NaN: bonded tissue */
   PetscReal gap_place[3];                 /* location of max_gap: cell, face 0..2, position along the face in [0, 1] */
   PetscReal max_penetration;              /* pointwise; vanishes as the mesh is refined */
+  PetscReal contact_width;                /* of the smooth law of contact, apothems; 0: the exact law */
+  PetscReal
+      contact_error; /* relative change of P from this width to none, to first order, as LamStressError; 0: exact */
+  PetscReal third_fraction; /* share of the contact force between walls that do not face each other at rest */
+  PetscReal lumen_contact;  /* share of the contact force within lumens */
   /* sum over closed faces of length n(x)n, over the whole interface length: 11, 22, 12; its trace is the closed
      fraction */
   PetscReal fabric[3];
@@ -98,6 +103,8 @@ typedef struct {
   PetscInt percolating_directions; /* number of independent period directions, 0 to 2, that a group spans */
   PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
+  PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */
+  PetscReal energy_released;    /* Psi that the jump has lost; NaN: no jump */
   PetscBool indicators_trusted; /* of a response from a database: quantities that are not derivatives of Psi vary little
                                    between the surrounding states; true for a solve */
   PetscInt branch;              /* 0: reached without leaving a saddle; n: after n branch switches */

@@ -29,14 +29,16 @@ LAM_EXPORT PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *
 LAM_EXPORT PetscErrorCode LamRVEDismiss(MPI_Comm comm);
 /* Copies the description; along and through must be set. PETSC_ERR_USER_INPUT if it cannot be solved. */
 LAM_EXPORT PetscErrorCode LamRVESetMicrostructure(LamRVE rve, const LamMicrostructure *micro);
-/* Strategy for contact: LAM_TWO_STEP (default) or LAM_ONE_STEP. No effect on bonded tissue. */
+/* Initial guess of contact without a state before: LAM_ONE_STEP (default) or LAM_TWO_STEP. No effect on bonded tissue.
+ */
 LAM_EXPORT PetscErrorCode LamRVESetStrategy(LamRVE rve, LamStrategy strategy);
 /* Convergence tolerance for the residual, forces per thickness over (C1 + C2) apothem, and for the complementarity
    of contact. The limit of rounding is used if it is larger. Default 0: the limit of rounding. */
 LAM_EXPORT PetscErrorCode LamRVESetTolerance(LamRVE rve, PetscReal tolerance);
 /*
   Selects what responses contain; other numbers are not computed, and are unknown. Status, stability, work counts and
-  the state are always computed. Default: everything. Solves under prescribed stress always compute derivatives.
+  the state are always computed. Default: LAM_WANT_ALL, i.e. all but jumps. Solves under prescribed stress always
+  compute derivatives.
 */
 typedef enum {
   LAM_WANT_STRESS = 1,      /* energy and its first derivatives, lumen and opening, turgor reached */
@@ -44,6 +46,8 @@ typedef enum {
                                the energy */
   LAM_WANT_INDICATORS = 4,  /* tractions, debonding */
   LAM_WANT_WALLS = 8,       /* stretch, energy and tension of the walls, for comparison with strengths; kinks */
+  LAM_WANT_JUMPS = 16,      /* with stress, of contact tissue: whether the branch of the state before has ended; costs
+                               further solves where more energy is lost than the derivatives explain */
   LAM_WANT_ALL = LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_WALLS
 } LamWanted;
 LAM_EXPORT PetscErrorCode LamRVESetWanted(LamRVE rve, LamWanted wanted);
@@ -131,7 +135,7 @@ LAM_EXPORT PetscErrorCode LamRVEGetLumens(LamRVE rve, LamRVEState state, PetscRe
 LAM_EXPORT PetscErrorCode LamRVESeal(LamRVE rve, PetscReal bulk_modulus, const PetscReal water[]);
 LAM_EXPORT PetscErrorCode LamRVEUnseal(LamRVE rve);
 
-/* Number of unknowns of a solve (free displacement components). */
+/* Number of unknowns of a solve: free displacement components, multipliers of contact, pressures that can be sealed. */
 LAM_EXPORT PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
 
 /*

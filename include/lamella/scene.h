@@ -25,16 +25,22 @@ LAM_C_BEGIN
 #define LAM_STRATEGIES(X)                                                                                              \
   X(LAM_TWO_STEP, "two_step") /* bonded tissue first, then release to contact */                                       \
   X(LAM_ONE_STEP, "one_step") /* contact from the affine state on */
+#define LAM_SHARPNESSES(X)                                                                                             \
+  X(LAM_SHARPNESS_AUTO, "auto") /* exact */                                                                            \
+  X(LAM_SHARPNESS_EXACT, "exact")                                                                                      \
+  X(LAM_SHARPNESS_SMOOTH, "smooth")
 #define LAM_PATCH_SIDES(X)                                                                                             \
   X(LAM_SIDES_AFFINE, "affine") /* the lateral outer walls follow F, as those in the grips do */                       \
   X(LAM_SIDES_FREE, "free")
 
 typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
 typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
+typedef enum { LAM_SHARPNESSES(LAM_ENUM_ENTRY) LAM_SHARPNESS_COUNT } LamSharpness;
 typedef enum { LAM_PATCH_SIDES(LAM_ENUM_ENTRY) LAM_PATCH_SIDES_COUNT } LamPatchSides;
 
 LAM_EXPORT extern const char *const LamInterfaceLawNames[]; /* "bonded", "contact" */
 LAM_EXPORT extern const char *const LamStrategyNames[];     /* "two_step", "one_step" */
+LAM_EXPORT extern const char *const LamSharpnessNames[];    /* "auto", "exact", "smooth" */
 LAM_EXPORT extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
 
 /* Properties that may vary between cells. */
@@ -57,6 +63,8 @@ typedef struct {
   LamInterfaceLawType interface;
   PetscReal clearance; /* gap between facing walls at rest, in apothems: each cell is smaller than its lattice site by
                           half of it */
+  LamSharpness sharpness;  /* law of contact */
+  PetscReal contact_width; /* of the smooth law, in apothems; 0: the usual one */
   PetscInt along, through; /* elements per face and through one wall; 0: chosen by the planner */
   PetscReal grading; /* of the elements along a face towards its ends, in [0, 1); 0: uniform; negative: chosen by the
                         planner */

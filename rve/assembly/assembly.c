@@ -61,6 +61,7 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
 {
   PetscFunctionBeginUser;
   *energy = LoopEnergy(rve, load, y);
+  if (rve->contact && !rve->contact->exact) *energy += LamSmoothEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2], element;
@@ -96,8 +97,12 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   PetscFunctionBeginUser;
   *energy = LoopEnergy(rve, load, y);
   *valid = PETSC_TRUE;
-  PetscCall(PetscArrayzero(residual, rve->length));
-  PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
+  if (rve->contact && !rve->contact->exact) {
+    PetscCall(LamSmoothAssemble(rve, load, y, energy, residual));
+  } else {
+    PetscCall(PetscArrayzero(residual, rve->length));
+    PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
+  }
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;

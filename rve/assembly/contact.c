@@ -1,6 +1,7 @@
 #include "rve_impl.h"
 
 #define OVERHANG 0.4      /* half-edges by which a hat's centre may lie outside the overlap */
+#define HYSTERESIS 0.2    /* of the junction status, in half-edges */
 #define LEAST_WEIGHT 1e-3 /* fraction of a full hat; hats of smaller weight have no multiplier */
 
 static PetscInt CountFaces(const LamMesh *mesh)
@@ -68,7 +69,6 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   contact->chain = 2 * contact->hats;
   contact->dofs = LamMortarDofs(along, along);
   contact->count = contact->face_count * contact->hats;
-  contact->hysteresis = LAM_HYSTERESIS;
   PetscCheck((PetscReal)contact->face_count * contact->dofs * contact->dofs < PETSC_MAX_INT, PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
              (int)mesh->cell_count, (int)along);
@@ -77,9 +77,8 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
                          &contact->x));
   PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active));
-  PetscCall(PetscCalloc3(contact->count * contact->dofs, &contact->rows,
-                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian, 2 * mesh->class_count,
-                         &contact->held));
+  PetscCall(PetscCalloc2(contact->count * contact->dofs, &contact->rows,
+                         contact->face_count * contact->dofs * contact->dofs, &contact->hessian));
   for (PetscInt e = 0; e < along; ++e) contact->J0[e] = LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
   PlaceFaces(micro, mesh, contact);
   PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
@@ -107,7 +106,6 @@ PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact)
         contact->coupling[h * dofs + i] =
             LamLinearEntry(linear, LamUnknown(classes[i / 2], i % 2), linear->positions + h);
   }
-  LamGapAreaSetMatrix(linear, &contact->gaps);
   PetscFunctionReturn(0);
 }
 
@@ -120,7 +118,7 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
   PetscCall(PetscFree5((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0, (*contact)->x));
   PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
-  PetscCall(PetscFree3((*contact)->rows, (*contact)->hessian, (*contact)->held));
+  PetscCall(PetscFree2((*contact)->rows, (*contact)->hessian));
   PetscCall(PetscFree2((*contact)->position, (*contact)->coupling));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
@@ -146,24 +144,23 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
   return chains;
 }
 
-/* Returns `old` while `exact` is within (low, high], widened by the margin on both sides; else `fresh`. */
-static PetscInt WithHysteresis(PetscReal margin, PetscInt old, PetscReal low, PetscReal high, PetscReal exact,
-                               PetscInt fresh)
+/* Returns `old` while `exact` is within (low, high], widened by HYSTERESIS on both sides; else `fresh`. */
+static PetscInt WithHysteresis(PetscInt old, PetscReal low, PetscReal high, PetscReal exact, PetscInt fresh)
 {
-  return exact > low - margin && exact <= high + margin ? old : fresh;
+  return exact > low - HYSTERESIS && exact <= high + HYSTERESIS ? old : fresh;
 }
 
 /*
   Finds the hats with multipliers of their own: those whose centre lies inside the overlap, or outside by at most
-  OVERHANG. The ends of the overlap are measured in half-edges. Hysteresis prevents oscillation of the status. If both
-  walls are prescribed at a corner, the gap there is not an unknown, so the corner hat has no multiplier of its own.
+  OVERHANG. The ends of the overlap are measured in half-edges. Hysteresis keeps the status along a path of states, and
+  the iteration from alternating. If both walls are prescribed at a corner, the gap there is not an unknown, so the
+  corner hat has no multiplier of its own.
 */
 static void Junction(const LamContact *contact, const LamContactFace *face, PetscInt *first, PetscInt *last)
 {
   const LamMortarSegments *segments = &contact->segments;
   const PetscInt count = segments->count, hats = contact->hats;
   PetscReal lo, hi;
-  PetscInt low, high;
 
   if (count == 0) {
     *first = hats;
@@ -172,10 +169,8 @@ static void Junction(const LamContact *contact, const LamContactFace *face, Pets
   }
   lo = 2.0 * segments->s[0] - OVERHANG;
   hi = 2.0 * segments->s[count - 1] + OVERHANG;
-  low = PetscMax(0, (PetscInt)PetscCeilReal(lo));
-  high = PetscMin(hats - 1, (PetscInt)PetscFloorReal(hi));
-  *first = WithHysteresis(contact->hysteresis, *first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, low);
-  *last = WithHysteresis(contact->hysteresis, *last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, high);
+  *first = WithHysteresis(*first, (PetscReal)*first - 1.0, (PetscReal)*first, lo, (PetscInt)PetscCeilReal(lo));
+  *last = WithHysteresis(*last, -(PetscReal)*last - 1.0, -(PetscReal)*last, -hi, (PetscInt)PetscFloorReal(hi));
   *first = PetscMax(*first, face->low);
   *last = PetscMin(*last, face->high);
 }
@@ -207,7 +202,24 @@ static void MergeHats(LamContact *contact, PetscInt f)
   }
 }
 
-PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow)
+PetscInt LamContactMerge(LamRVE rve, const LamLoad *load, const PetscReal y[])
+{
+  PetscInt changes = 0;
+
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    LamContactFace *face = &rve->contact->faces[f];
+    PetscInt first = face->first, last = face->last;
+
+    (void)LamContactChains(rve, load->F, y, f);
+    Junction(rve->contact, face, &first, &last);
+    changes += first != face->first || last != face->last;
+    face->first = first;
+    face->last = last;
+  }
+  return changes;
+}
+
+PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
   LamContact *contact = rve->contact;
 
@@ -217,7 +229,6 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
     LamContactFace *face = &contact->faces[f];
     PetscReal *lambda = &contact->lambda[f * contact->hats];
 
-    if (follow) Junction(contact, face, &face->first, &face->last);
     SpreadMultipliers(face, contact->hats, lambda);
     LamMortarEvaluate(&chains, &contact->segments, lambda, LAM_MORTAR_POINTS, &contact->result);
     PetscCall(PetscArraycpy(&contact->hessian[f * contact->dofs * contact->dofs], contact->result.hessian,
@@ -229,20 +240,7 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
   PetscFunctionReturn(0);
 }
 
-PetscBool LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[])
-{
-  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
-    const LamContactFace *face = &rve->contact->faces[f];
-    PetscInt first = face->first, last = face->last;
-
-    (void)LamContactChains(rve, load->F, y, f);
-    Junction(rve->contact, face, &first, &last);
-    if (first != face->first || last != face->last) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-static PetscBool Carries(const LamContact *contact, PetscInt h)
+PetscBool LamContactCarries(const LamContact *contact, PetscInt h)
 {
   const LamContactFace *face = &contact->faces[h / contact->hats];
   const PetscInt j = h % contact->hats;
@@ -251,13 +249,13 @@ static PetscBool Carries(const LamContact *contact, PetscInt h)
   return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * half);
 }
 
-PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance)
+PetscInt LamContactFindActive(LamContact *contact)
 {
   PetscInt changes = 0;
 
   for (PetscInt h = 0; h < contact->count; ++h) {
-    const PetscReal gap = contact->gap[h] + compliance * contact->lambda[h];
-    const PetscBool active = (PetscBool)(Carries(contact, h) && contact->lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
+    const PetscBool active =
+        (PetscBool)(LamContactCarries(contact, h) && contact->lambda[h] - LAM_CONTACT_SCALE * contact->gap[h] > 0.0);
 
     changes += active != contact->active[h];
     contact->active[h] = active;
@@ -270,7 +268,7 @@ PetscReal LamContactComplementarity(const LamContact *contact)
   PetscReal largest = 0.0;
 
   for (PetscInt h = 0; h < contact->count; ++h)
-    if (Carries(contact, h)) {
+    if (LamContactCarries(contact, h)) {
       const PetscReal r = PetscMin(contact->lambda[h], LAM_CONTACT_SCALE * contact->gap[h]);
 
       largest = PetscMax(largest, PetscAbsReal(r));
@@ -316,7 +314,7 @@ void LamContactAddCurvature(LamRVE rve)
   }
 }
 
-void LamContactSetRows(LamRVE rve, PetscReal compliance)
+void LamContactSetRows(LamRVE rve)
 {
   const LamContact *contact = rve->contact;
   const PetscInt dofs = contact->dofs;
@@ -326,34 +324,10 @@ void LamContactSetRows(LamRVE rve, PetscReal compliance)
     const PetscInt *coupling = &contact->coupling[h * dofs];
     const PetscReal *row = &contact->rows[h * dofs];
 
-    values[rve->linear->row[rve->linear->positions + h]] = contact->active[h] ? -compliance * contact->weight[h] : 1.0;
+    values[rve->linear->row[rve->linear->positions + h]] = contact->active[h] ? 0.0 : 1.0;
     for (PetscInt i = 0; i < dofs; ++i)
       if (coupling[i] >= 0) values[coupling[i]] = contact->active[h] ? -row[i] : 0.0;
   }
-}
-
-PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9], const PetscReal lambda[],
-                                 PetscReal compliance)
-{
-  LamContact *contact = rve->contact;
-  PetscInt changes = 0;
-
-  for (PetscInt h = 0; h < contact->count; ++h) {
-    const PetscReal *row = &contact->rows[h * contact->dofs];
-    PetscReal gap = contact->gap[h];
-    PetscBool active;
-
-    if (h % contact->hats == 0) GatherChains(rve, dF, step, h / contact->hats);
-    if (!Carries(contact, h)) continue;
-    for (PetscInt i = 0; i < contact->dofs; ++i) gap += row[i] * contact->x[i / 2][i % 2] / contact->weight[h];
-    gap += compliance * lambda[h];
-    active = (PetscBool)(lambda[h] - LAM_CONTACT_SCALE * gap > 0.0);
-    /* the gap of an active hat is zero: rounding must not open it */
-    if (contact->active[h] && lambda[h] > 0.0) active = PETSC_TRUE;
-    changes += active != contact->active[h];
-    contact->active[h] = active;
-  }
-  return changes;
 }
 
 void LamTakeJunctions(LamRVE rve, LamRVEState state)

@@ -8,8 +8,8 @@
   F enters only through the images' shifts F S.
 
   Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner hat: hat j has the
-  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added to that hat. This status is updated
-  in the first iterations, with hysteresis, and then frozen.
+  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added to that hat. This status is kept
+  during an iteration.
 */
 #ifndef LAM_RVE_CONTACT_H
 #define LAM_RVE_CONTACT_H
@@ -29,6 +29,7 @@ typedef struct {
 } LamContactFace;
 
 typedef struct {
+  PetscBool exact;     /* the exact law is in use, else the smooth one (smooth_contact.h) */
   PetscInt face_count; /* 3 per cell, less those without a neighbour in a patch */
   PetscInt hats;       /* per face: 2 along + 1 */
   PetscInt chain;      /* nodes of both chains of a face: slave 0.., then master */
@@ -45,10 +46,6 @@ typedef struct {
   PetscReal *rows;            /* [count][dofs] dG of unmerged hats */
   PetscReal *hessian;         /* [face][dofs][dofs] second derivative of sum lambda G */
   PetscBool *active;          /* [count]: in contact; false where merged */
-  PetscReal *held;            /* [2 classes] forces transmitted by bonding but not by contact, ... */
-  PetscReal share;            /* ... and the fraction of them that still acts; nonzero only during release */
-  PetscReal largest_step;     /* of the last Newton iteration */
-  PetscReal hysteresis;       /* hysteresis of the junction status, in half-edges */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: matrix index of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: matrix index of dof and multiplier */
   PetscReal (*x)[2];          /* [chain] work space: chains of a face, ... */

@@ -74,23 +74,3 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
   }
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth)
-{
-  LamContact *contact = rve->contact;
-  PetscReal nearest[2];
-
-  PetscFunctionBeginUser;
-  *depth = 0.0;
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    const LamMortarChains chains = LamContactChains(rve, F, y, f);
-
-    for (PetscInt i = 0; i <= POINTS_PER_EDGE * rve->mesh.along; ++i) {
-      const PetscReal s = (PetscReal)i / POINTS_PER_EDGE;
-      const PetscInt edge = FacingEdge(&contact->segments, s);
-
-      if (edge >= 0) *depth = PetscMax(*depth, -LamMortarGap(&chains, s, edge, nearest));
-    }
-  }
-  PetscFunctionReturn(0);
-}

@@ -17,19 +17,30 @@ PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(void *ctx),
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
+/* Whether the solve is stopped before a factorisation; counts the factorisation if it is not. */
+static PetscBool IsStopped(LamRVE rve)
 {
   LamWork *work = &rve->work;
 
-  PetscFunctionBeginUser;
   if (!work->stopped && rve->interrupt) work->stopped = rve->interrupt(rve->interrupt_ctx);
-  if (work->stopped) {
-    *negative = 0;
-    *ok = PETSC_FALSE;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamLinearFactor(rve->linear, shift, negative, ok));
-  ++work->factorisations;
+  if (!work->stopped) ++work->factorisations;
+  return work->stopped;
+}
+
+PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  *negative = 0;
+  *ok = PETSC_FALSE;
+  if (!IsStopped(rve)) PetscCall(LamLinearFactor(rve->linear, shift, negative, ok));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEFactorExpected(LamRVE rve, PetscReal shift, PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  *ok = PETSC_FALSE;
+  if (!IsStopped(rve)) PetscCall(LamLinearFactorExpected(rve->linear, shift, LamExpectedNegative(rve), ok));
   PetscFunctionReturn(0);
 }
 

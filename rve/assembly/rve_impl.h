@@ -3,10 +3,12 @@
 
     assembly.c     sums over elements: energy, residual, tangent
     turgor.c       areas of lumens, pressures of sealed ones
-    contact.c      cell faces in contact: pairs, junctions, active set
+    smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
+    contact.c      the exact law between facing walls: pairs, junctions, active set
     interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
-    overlap.c interface.c    overlapping cells; gaps and pressures for pictures
+    smooth_pressures.c  contact pressures and penetrations of the smooth law
+    interface.c    gaps and pressures for pictures
 
   Unknowns are the current positions y of node classes; class 0 is prescribed, so unknown = 2 (class - 1) + component.
   An RVE that can be sealed also has the pressure of each lumen: in y after the positions, in the matrix after all
@@ -18,6 +20,7 @@
 #include <lamella/rve.h>
 #include "contact.h"
 #include "linear.h"
+#include "smooth_contact.h"
 
 /* Positions of one material point and the load they equilibrate. */
 struct LamRVEState_s {
@@ -31,7 +34,8 @@ struct LamRVEState_s {
   PetscInt faces;
   PetscInt (*hats)[2]; /* [faces] junction status: first and last hat */
   PetscBool solved;    /* y and lambda are a solution, not the reference state */
-  LamRVEState bonded;  /* state of the bonded tissue; owned */
+  PetscReal width;     /* of the smooth law that it solves, apothems; 0: the exact law */
+  PetscReal energy[8]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
 };
 
 typedef struct {
@@ -51,6 +55,10 @@ typedef struct {
   PetscReal *factor; /* [cell] work space */
 } LamSeal;
 
+/* Linear systems: of positions and pressures; of a contact that has met more walls; of the exact law, with multipliers.
+   The last two are created when needed. */
+enum { LAM_SYSTEM_BASE, LAM_SYSTEM_GROWN, LAM_SYSTEM_EXACT, LAM_SYSTEMS };
+
 struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
@@ -66,10 +74,11 @@ struct LamRVE_s {
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the current iteration */
   LamLinear *linear;            /* in use; one of `systems` */
-  LamLinear systems[2];         /* of positions and pressures; of contact with multipliers, created at its first use */
-  LamContact *contact;      /* NULL for bonded tissue; owned */
-  LamRVE bonded;            /* contact tissue: the same tissue with bonded walls; owned */
-  LamRVEState bonded_state; /* of `bonded`, work space; owned */
+  LamLinear systems[LAM_SYSTEMS];
+  LamSmooth *smooth;        /* the smooth law of contact; NULL for bonded tissue; owned */
+  LamContact *contact;      /* the exact law; NULL for bonded tissue; owned */
+  LamRVE bonded;            /* two_step: the same tissue with bonded walls, created at its first use; owned */
+  LamRVEState bonded_state; /* of `bonded`; owned */
   LamSeal seal;
   PetscInt ndof;                          /* 2 class_count */
   PetscInt length;                        /* ndof + linear.lumens */
@@ -78,6 +87,7 @@ struct LamRVE_s {
   PetscInt budget;                        /* current limit of its iterations */
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
+  PetscBool looks_back;                   /* the solve looks for the end of a branch before it: no further one does */
   PetscBool consistent;        /* residual and linear.values are evaluated at y with the wall stresses of y */
   PetscBool moved;             /* y has been moved affinely since the last solution */
   PetscReal lowest_eigenvalue; /* of the last unstable state found */
@@ -181,43 +191,75 @@ PetscReal LamSealError(LamRVE rve, const PetscReal residual[]);
 /* Sets the turgor measures of the response. */
 void LamTurgorMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 
+/* ---- smooth_contact.c ---- */
+PetscErrorCode LamSmoothCreate(LamRVE rve);
+PetscErrorCode LamSmoothDestroy(LamSmooth **smooth);
+/* The law of contact in use, with its linear system; the factor is forgotten. */
+PetscErrorCode LamUseSmoothLaw(LamRVE rve, PetscReal width);
+PetscErrorCode LamUseExactLaw(LamRVE rve);
+static inline PetscBool LamIsExact(LamRVE rve)
+{
+  return (PetscBool)(rve->contact && rve->contact->exact);
+}
+/* Forgets the walls that the last solve has met. */
+PetscErrorCode LamSmoothReset(LamRVE rve);
+LamTouchStrength LamTouchStrengthOf(LamRVE rve, const LamLoad *load, PetscInt a, PetscInt b);
+/* Calls the visitor with the sums over all pairs of spans. */
+void LamSmoothVisit(LamRVE rve, const LamLoad *load, const PetscReal y[], LamTouchWanted wanted,
+                    LamTouchBlockVisitor visitor, void *ctx);
+PetscReal LamSmoothEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
+/* Zeroes residual and linear.values, and adds energy, residual and tangent. */
+PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                                 PetscReal residual[]);
+
+/* ---- smooth_pressures.c ---- */
+/* Forces of the smooth law at rve->y, per reference thickness. */
+typedef struct {
+  PetscReal facing, third, lumen; /* sums of normal forces between facing walls, others, and within lumens */
+} LamTouchForces;
+/* Sets the junction status, multipliers and active set of the exact law from the smooth law at rve->y, as its initial
+   guess and for the indicators. */
+PetscErrorCode LamSmoothPressures(LamRVE rve, const LamLoad *load, LamTouchForces *forces);
+/* Deepest penetrations of walls at rve->y, apothems, >= 0: of facing walls, of others; cell: those of the latter. */
+typedef struct {
+  PetscReal facing, other;
+  PetscInt cell[2];
+} LamDepths;
+LamDepths LamFindDepths(LamRVE rve, const LamLoad *load);
+
 /* ---- contact.c ---- */
-#define LAM_CONTACT_SCALE 9.0   /* scale of gaps (apothems) to multipliers (C1 + C2): 1 MPa per apothem by default */
-#define LAM_HYSTERESIS 0.2      /* of the junction status, in half-edges; ... */
-#define LAM_MORE_HYSTERESIS 0.1 /* ... added each time a solution has changed the status */
+#define LAM_CONTACT_SCALE 9.0 /* scale of gaps (apothems) to multipliers (C1 + C2): 1 MPa per apothem by default */
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **contact);
 PetscErrorCode LamContactSetMatrix(const LamLinear *linear, LamContact *contact);
 PetscErrorCode LamContactDestroy(LamContact **contact);
 /* Chains of face f at positions y, in contact->x; their segments are in contact->segments. */
 LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt f);
-/* Gaps, weights, rows and second derivatives at positions y with the present multipliers. follow: update the junction
-   status from y; otherwise it is kept. */
-PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscBool follow);
-/* Whether the junction status agrees with positions y. */
-PetscBool LamContactStatusHolds(LamRVE rve, const LamLoad *load, const PetscReal y[]);
-/* Updates the active set from the last evaluation: lambda - c (gap + compliance lambda) > 0. Returns the number of
-   changes. */
-PetscInt LamContactFindActive(LamContact *contact, PetscReal compliance);
+/* Sets the junction status to that of positions y. Returns the number of faces at which it has changed. */
+PetscInt LamContactMerge(LamRVE rve, const LamLoad *load, const PetscReal y[]);
+/* Gaps, weights, rows and second derivatives at positions y with the present multipliers and junction status. */
+PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscReal y[]);
+/* Updates the active set from the last evaluation: lambda - c gap > 0. Returns the number of changes. */
+PetscInt LamContactFindActive(LamContact *contact);
 PetscInt LamContactCountActive(const LamContact *contact);
+/* Whether a hat has a multiplier of its own, and is not merged into another. */
+PetscBool LamContactCarries(const LamContact *contact, PetscInt hat);
 /* max |min(lambda, c gap)| over all hats. */
 PetscReal LamContactComplementarity(const LamContact *contact);
 /* residual [ndof] += -B^T lambda. */
 void LamContactAddForce(LamRVE rve, PetscReal residual[]);
-/* Predicts the active set by the present linearisation, for positions changed by `step` [ndof], F changed by dF, and
-   multipliers lambda. Returns the number of changes. */
-PetscInt LamContactPredictActive(LamRVE rve, const PetscReal step[], const PetscReal dF[9], const PetscReal lambda[],
-                                 PetscReal compliance);
 /* Adds the second derivative of -sum lambda G to linear.values. */
 void LamContactAddCurvature(LamRVE rve);
 /* Sets the junction statuses to those of the state; the previous solve may have left others. */
 void LamTakeJunctions(LamRVE rve, LamRVEState state);
-/* Sets the rows of the multipliers in linear.values: -dG and -compliance D for active hats, 0 and 1 for others. */
-void LamContactSetRows(LamRVE rve, PetscReal compliance);
+/* Sets the rows of the multipliers in linear.values: -dG and 0 for active hats, 0 and 1 for others. */
+void LamContactSetRows(LamRVE rve);
 
 /* ---- interrupt.c ---- */
 /* As LamLinearFactor for rve->linear; counts the factorisation. Once the interrupt has stopped the solve, *ok is
    PETSC_FALSE and there may be no factor. */
 PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok);
+/* The same if the matrix has the number of negative eigenvalues of a stable state; cheaper where it has not. */
+PetscErrorCode LamRVEFactorExpected(LamRVE rve, PetscReal shift, PetscBool *ok);
 /* Adds the work of a part of the solve; if the part was stopped, the solve is stopped, too. */
 void LamAddWork(LamRVE rve, const LamResponse *part);
 static inline PetscBool LamWasStopped(const LamResponse *response)
@@ -251,6 +293,8 @@ static inline PetscReal LamBendingStiffness(LamRVE rve)
 }
 
 /* ---- stability.c ---- */
+#define LAM_ZERO_MODE 1e-9 /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2   \
+                            */
 #define LAM_NEAR_RATE 1e-3 /* largest rate of a factor that is used beyond its own iteration */
 /* Number of negative eigenvalues of the matrix at a stable state: one for each active multiplier and sealed lumen. */
 PetscInt LamExpectedNegative(LamRVE rve);
@@ -273,15 +317,5 @@ PetscReal LamModeCurvature(LamRVE rve, const PetscReal mode[], PetscReal image[]
 /* Lowest eigenvalue of the matrix in linear.values and its unit eigenvector, mode[n]. If the solve is stopped, the
    eigenvalue is NaN and the mode arbitrary. */
 PetscErrorCode LamSoftestMode(LamRVE rve, PetscReal *eigenvalue, PetscReal mode[]);
-
-/* ---- overlap.c ---- */
-/* Largest depth of an outer wall inside another cell, apothems; pair: the wall's cell and the other cell; facing:
-   whether that wall faces that cell. 0 and -1, -1 if there is no overlap. */
-PetscErrorCode LamFindOverlap(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth, PetscInt pair[2],
-                              PetscBool *facing);
-
-/* ---- interface.c ---- */
-/* Largest penetration of facing walls, apothems; >= 0. */
-PetscErrorCode LamFacingDepth(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscReal *depth);
 
 #endif

@@ -9,11 +9,9 @@
 */
 #include "rve_impl.h"
 
-#define ZERO_MODE 1e-9 /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2 */
-
 PetscInt LamExpectedNegative(LamRVE rve)
 {
-  return (rve->contact ? LamContactCountActive(rve->contact) : 0) + (rve->seal.closed ? rve->linear->lumens : 0);
+  return (LamIsExact(rve) ? LamContactCountActive(rve->contact) : 0) + (rve->seal.closed ? rve->linear->lumens : 0);
 }
 
 /* Factors with a shift; negative: eigenvalues beyond the expected ones. */
@@ -27,7 +25,7 @@ static PetscErrorCode FactorShifted(LamRVE rve, PetscReal shift, PetscInt *negat
 
 /*
   Contact tissue may have motions that do not change the energy: cells that slide or rotate freely. If inverse
-  iteration finds an eigenvalue of absolute value at most ZERO_MODE, the inertia on both sides of zero counts these
+  iteration finds an eigenvalue of absolute value at most LAM_ZERO_MODE, the inertia on both sides of zero counts these
   modes. They do not count as negative. The factor keeps the shift, which is harmless: no force acts along these
   modes.
 */
@@ -43,10 +41,10 @@ static PetscErrorCode CountZeroModes(LamRVE rve, PetscInt *negative, PetscBool *
     PetscCall(LamImproveSoftestMode(rve, 3, mode));
     eigenvalue = LamModeCurvature(rve, mode, image);
     PetscCall(PetscFree2(mode, image));
-    if (PetscAbsReal(eigenvalue) > ZERO_MODE) PetscFunctionReturn(0);
+    if (PetscAbsReal(eigenvalue) > LAM_ZERO_MODE) PetscFunctionReturn(0);
   }
-  PetscCall(FactorShifted(rve, -ZERO_MODE, &below, ok));
-  if (*ok) PetscCall(FactorShifted(rve, ZERO_MODE, &above, ok));
+  PetscCall(FactorShifted(rve, -LAM_ZERO_MODE, &below, ok));
+  if (*ok) PetscCall(FactorShifted(rve, LAM_ZERO_MODE, &above, ok));
   if (!*ok) PetscFunctionReturn(0);
   rve->zero_modes = below - above;
   rve->lowest_eigenvalue = eigenvalue;
@@ -66,10 +64,10 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
   if (!*ok) PetscFunctionReturn(0);
   if (!rve->consistent) PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   rve->consistent = PETSC_FALSE;
-  if (rve->contact) {
-    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
+  if (LamIsExact(rve)) {
+    PetscCall(LamContactEvaluate(rve, load, rve->y));
     LamContactAddCurvature(rve);
-    LamContactSetRows(rve, 0.0);
+    LamContactSetRows(rve);
   }
   if (rve->linear->rate <= LAM_NEAR_RATE) {
     /* eigenvalues of K0^-1 K are within `rate` of 1, so K has the inertia of the factored matrix K0 */

@@ -72,10 +72,12 @@ PetscErrorCode LamTakeState(LamRVE rve, LamRVEState state)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(rve->y, state->y, rve->length));
   if (!rve->contact) PetscFunctionReturn(0);
+  PetscCall(state->width > 0.0 ? LamUseSmoothLaw(rve, state->width) : LamUseExactLaw(rve));
   PetscCall(PetscArraycpy(rve->contact->lambda, state->lambda, state->multipliers));
   LamTakeJunctions(rve, state);
-  PetscCall(LamContactEvaluate(rve, &state->load, rve->y, PETSC_FALSE));
-  (void)LamContactFindActive(rve->contact, 0.0);
+  if (state->width > 0.0) PetscFunctionReturn(0);
+  PetscCall(LamContactEvaluate(rve, &state->load, rve->y));
+  (void)LamContactFindActive(rve->contact);
   PetscFunctionReturn(0);
 }
 
@@ -87,10 +89,11 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(rve->linear->n, &unknowns));
   *eigenvalue = NAN;
   LamForgetFactor(rve);
+  if (rve->contact) PetscCall(LamSmoothReset(rve));
   PetscCall(LamTakeState(rve, state));
+  PetscCall(PetscCalloc1(rve->linear->n, &unknowns));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
   if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));
   largest = LamLargestEntry(rve->linear->positions, unknowns);

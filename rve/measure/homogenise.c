@@ -1,14 +1,15 @@
 /*
   Effective stress, tangent and couplings of a converged state.
 
-  Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p, g). F enters L through the image shifts
+  Method. Psi(q) = (1/V0) min_y L(y, q) with q = (F11, F12, F21, F22, F33, p, g) and, for the smooth law of contact, its
+  width. F enters L through the image shifts
   x_a = y + F S_a and through F33 in the walls and in the volumes; p through -p F33 A_lumen, g through g F33 A_gap. Then
     dPsi/dq   = L_q / V0,
     d2Psi/dq2 = (L_qq - L_qy K^-1 L_yq) / V0         (static condensation with the factor of the converged state),
   where y includes the active multipliers of contact, whose rows are -dG/dF, and the pressures of sealed lumens; for
   these p is the turgor of the load, i.e. the pressure p0 of the water in turgor.c. So P_ij = (1/V0) sum_a f_ai S_aj
   over shifted nodes, f_a the nodal forces of walls or contact, and the tangent is symmetric by construction. Bonded
-  tissue does not depend on g.
+  tissue does not depend on g. The strength of the smooth law depends on p and g.
 
   Rounding. Positions have at most 16 digits, so r = L_y is not zero but a few eps times the stiffest modulus, and the
   error of L_F is of the same size. To first order the solution is y - K^-1 r, and there P = (L_F - L_Fy K^-1 r) / V0:
@@ -18,15 +19,16 @@
 #include "measure.h"
 #include <lamella/ellipticity.h>
 
-#define NQ 7
 #define Q_F33 4
 #define Q_TURGOR 5
 #define Q_COHESION 6
+#define Q_WIDTH 7
+#define NQ 8
 
 const PetscInt LamFComponent[LAM_F_COUNT] = {0, 1, 3, 4, 8};
 
 typedef struct {
-  PetscInt nq;   /* NQ; for bonded tissue NQ - 1: no cohesion */
+  PetscInt nq;   /* NQ; of the exact law Q_WIDTH, of bonded tissue Q_COHESION: what it does not depend on comes last */
   PetscInt size; /* of a column: the prescribed class, the other positions, the multipliers, the pressures */
   PetscReal Lq[NQ], Lqq[NQ][NQ];
   PetscReal lumen, gap; /* areas */
@@ -187,6 +189,52 @@ static void AddContactFace(LamRVE rve, PetscInt f, Condensation *c)
     }
 }
 
+typedef struct {
+  LamRVE rve;
+  Condensation *c;
+  PetscReal F33;
+} SmoothTerms;
+
+/* Adds the terms of a pair of spans: F33 s e(x), with s(p, g). */
+static void AddTouchBlock(void *ctx, const LamTouchBlock *block)
+{
+  const SmoothTerms *terms = (const SmoothTerms *)ctx;
+  Condensation *c = terms->c;
+  const LamTouchStrength *s = &block->strength;
+  const PetscReal F33 = terms->F33, factor[3] = {s->s, F33 * s->p, F33 * s->g};
+  const PetscInt q3[3] = {Q_F33, Q_TURGOR, Q_COHESION};
+
+  for (PetscInt k = 0; k < 3; ++k) c->Lq[q3[k]] += factor[k] * block->energy;
+  c->Lq[Q_WIDTH] += F33 * s->s * block->energy_width;
+  c->Lqq[Q_F33][Q_TURGOR] += s->p * block->energy;
+  c->Lqq[Q_F33][Q_COHESION] += s->g * block->energy;
+  c->Lqq[Q_F33][Q_WIDTH] += s->s * block->energy_width;
+  c->Lqq[Q_TURGOR][Q_TURGOR] += F33 * s->pp * block->energy;
+  c->Lqq[Q_TURGOR][Q_COHESION] += F33 * s->pg * block->energy;
+  c->Lqq[Q_COHESION][Q_COHESION] += F33 * s->gg * block->energy;
+  for (PetscInt j = 0; j < LAM_TOUCH_DOFS; ++j) {
+    const PetscInt at = 2 * block->class[j / 2] + j % 2;
+
+    for (PetscInt k = 0; k < 3; ++k) c->R[q3[k] * c->size + at] += factor[k] * block->f[j];
+    c->R[Q_WIDTH * c->size + at] += F33 * s->s * block->f_width[j];
+    for (PetscInt l = 0; l < 2; ++l) {
+      const PetscReal Sj = block->shift[j / 2][l];
+      const PetscInt q = 2 * (j % 2) + l;
+
+      if (Sj == 0.0) continue;
+      c->Lq[q] += F33 * s->s * block->f[j] * Sj;
+      for (PetscInt k = 0; k < 3; ++k) c->Lqq[q][q3[k]] += factor[k] * block->f[j] * Sj;
+      c->Lqq[q][Q_WIDTH] += F33 * s->s * block->f_width[j] * Sj;
+      for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) {
+        const PetscReal K = F33 * s->s * block->K[i][j] * Sj;
+
+        c->R[q * c->size + 2 * block->class[i / 2] + i % 2] += K;
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] += block->shift[i / 2][k] * K;
+      }
+    }
+  }
+}
+
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[])
 {
   const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
@@ -202,9 +250,9 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
   const PetscInt positions = rve->linear->positions, pressures = rve->linear->pressures;
 
   for (PetscInt i = 0; i < rve->ndof; ++i) rve->trial[i] = rve->residual[i];
-  if (contact) LamContactAddForce(rve, rve->trial);
+  if (LamIsExact(rve)) LamContactAddForce(rve, rve->trial);
   for (PetscInt i = 0; i < positions; ++i) r[i] = rve->trial[i + 2];
-  for (PetscInt h = 0; contact && h < contact->count; ++h)
+  for (PetscInt h = 0; LamIsExact(rve) && h < contact->count; ++h)
     r[positions + h] = contact->active[h] ? -contact->gap[h] * contact->weight[h] : 0.0;
   for (PetscInt k = 0; k < rve->linear->lumens; ++k)
     r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
@@ -256,15 +304,18 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 /* Sums L_q, L_qq and R, which the caller frees. */
 static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
 {
+  SmoothTerms terms = {rve, c, load->F[8]};
+
   PetscFunctionBeginUser;
-  c->nq = rve->contact ? NQ : NQ - 1;
+  c->nq = !rve->contact ? Q_COHESION : LamIsExact(rve) ? Q_WIDTH : NQ;
   c->size = rve->linear->n + 2;
   PetscCall(PetscCalloc1(c->nq * c->size, &c->R));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, c);
   AddLumen(rve, load, c);
   if (rve->contact) {
     AddGapVolume(rve, load, c);
-    for (PetscInt f = 0; f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);
+    for (PetscInt f = 0; LamIsExact(rve) && f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);
+    if (!LamIsExact(rve)) LamSmoothVisit(rve, load, rve->y, LAM_TOUCH_WIDTH, AddTouchBlock, &terms);
   }
   PetscFunctionReturn(0);
 }
@@ -285,6 +336,17 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
   PetscFunctionReturn(0);
 }
 
+/* Change of P from the width of the smooth law to none, to first order; 0 for the exact law. */
+static PetscReal ContactError(LamRVE rve, const PetscReal H[NQ][NQ], const LamResponse *response)
+{
+  PetscReal changed[9];
+
+  if (LamIsExact(rve)) return 0.0;
+  for (PetscInt i = 0; i < 9; ++i) changed[i] = response->P[i];
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) changed[LamFComponent[q]] -= rve->smooth->width * H[q][Q_WIDTH];
+  return LamStressError(changed, response->P);
+}
+
 static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *response)
 {
   const PetscInt *component = LamFComponent;
@@ -299,6 +361,7 @@ static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *
     for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
   }
   LamResponseFindBand(response);
+  if (rve->contact) response->contact_error = ContactError(rve, (const PetscReal(*)[NQ])H, response);
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
   response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
@@ -315,13 +378,13 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   PetscCall(Assemble(rve, load, &c));
   PetscCall(RelaxStress(rve, &c));
+  for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
   if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
   PetscCall(PetscFree(c.R));
   response->energy = energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;
   response->opening_fraction = load->F[8] * c.gap / rve->mesh.V0;
-  for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
-  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
   response->energy_turgor = c.Lq[Q_TURGOR] / rve->mesh.V0;
   response->energy_cohesion = c.Lq[Q_COHESION] / rve->mesh.V0;
   LamTurgorMeasures(rve, load, response);

@@ -1,6 +1,7 @@
 /*
-  Collapsed lumens. Self-contact of a cell's wall is not modelled. A state in which an inner loop intersects itself,
-  or is clockwise because the ring is inverted, is therefore rejected. This occurs at large compression.
+  Collapsed lumens. In bonded tissue contact within a lumen is not modelled; in contact tissue it is between walls that
+  are not beside each other (touching.h), but a corner may close like a hinge. A state in which an inner loop intersects
+  itself, or is clockwise because the ring is inverted, is rejected. This occurs at large compression.
 
   Method. The inner loop of each cell is the polygon of its nodes (two per element). The loop is simple if no two
   non-adjacent sides intersect. Bounding boxes are compared first.

@@ -1,11 +1,13 @@
 #include "solve.h"
 #include <petscblaslapack.h>
 
-#define LONG_STEP 0.1 /* apothems: longer steps freeze F during patience */
+#define LEAST_STIFFNESS                                                                                                \
+  1e-6 /* C1 + C2: bounds the steps of a descent in F; below that of all tissue that bears a load */
 
 PetscErrorCode LamBorderCreate(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamBorder **out)
 {
-  const PetscInt n = rve->linear->n;
+  /* of the largest of the systems */
+  const PetscInt n = rve->systems[LAM_SYSTEM_BASE].n + (rve->contact ? rve->contact->count : 0);
   LamBorder *border;
 
   PetscFunctionBeginUser;
@@ -35,13 +37,12 @@ PetscErrorCode LamBorderDestroy(LamBorder **border)
 
 PetscErrorCode LamBorderAssemble(LamRVE rve, LamBorder *border, PetscReal *norm)
 {
-  const PetscInt n = rve->linear->n, multipliers = rve->contact ? rve->contact->count : 0;
+  const PetscInt n = rve->linear->n, multipliers = LamIsExact(rve) ? rve->contact->count : 0;
   PetscReal Lq[LAM_F_COUNT], sum;
 
   PetscFunctionBeginUser;
   if (!border) PetscFunctionReturn(0);
   sum = *norm * *norm;
-  border->freeze_F = PETSC_FALSE;
   PetscCall(LamAssembleGradient(rve, &border->load, Lq, border->Lqq, border->R));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->R + border->q[k] * n + rve->linear->positions;
@@ -92,16 +93,12 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
   }
   PetscCall(LamSmallEigenvectors(border->count, (const PetscReal(*)[LAM_F_COUNT])S, w, V));
   for (PetscInt k = 0; k < border->count; ++k) {
-    const PetscReal share = LamInnerProduct(border->count, V[k], b) / w[k];
+    const PetscReal stiffness = border->descend ? PetscMax(PetscAbsReal(w[k]), LEAST_STIFFNESS * rve->mesh.V0) : w[k];
+    const PetscReal share = LamInnerProduct(border->count, V[k], b) / stiffness;
 
     for (PetscInt l = 0; l < border->count; ++l) dq[l] += share * V[k][l];
   }
   SetStep(rve, border, dq, solution);
-  if (border->patience > 0 && LamBorderReach(rve, border, solution) > LONG_STEP) border->freeze_F = PETSC_TRUE;
-  if (border->freeze_F) {
-    PetscCall(PetscArrayzero(dq, LAM_F_COUNT));
-    SetStep(rve, border, dq, solution);
-  }
   PetscFunctionReturn(0);
 }
 

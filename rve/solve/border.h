@@ -24,8 +24,7 @@ typedef struct {
   PetscReal *R;              /* [LAM_F_COUNT][n] */
   PetscReal *rhs, *solution; /* [count + 1][n] */
   PetscReal dF[9];           /* step of F */
-  PetscBool freeze_F;        /* F is not updated in this iteration */
-  PetscInt patience;         /* iterations left in which F is frozen if the step is long, while contact settles */
+  PetscBool descend;         /* steps of F lower the energy where it is not convex in F */
 } LamBorder;
 
 /* A border that may be NULL then stands for a fully prescribed F. */

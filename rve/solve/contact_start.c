@@ -3,7 +3,7 @@
 
   Mihai, Safar & Wyatt, J. Eng. Math. (successive deformation decomposition) for the bonded initial guess.
 */
-#include "contact_path.h"
+#include "contact_find.h"
 
 void LamContactStartNear(LamRVE rve, LamRVEState from, const LamLoad *load)
 {
@@ -38,64 +38,48 @@ void LamContactStartAffine(LamRVE rve, const LamLoad *load)
   CloseClearance(rve, load);
   (void)PetscArrayzero(rve->stress, rve->mesh.element_count);
   for (PetscInt c = 0; c < rve->linear->lumens; ++c) rve->y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c);
-  for (PetscInt h = 0; h < rve->contact->count; ++h)
-    rve->contact->lambda[h] = PetscMax(0.0, load->turgor + load->cohesion);
+  rve->moved = PETSC_TRUE;
 }
 
-/* Copies positions and pressures of the bonded solution and sets consistent wall stresses. */
-static void TakeBondedPositions(LamRVE rve, const LamLoad *load)
+static PetscErrorCode CreateBonded(LamRVE rve)
 {
-  const LamMesh *mesh = &rve->mesh, *bonded = &rve->bonded->mesh;
-
-  for (PetscInt i = 0; i < mesh->node_count; ++i) {
-    const PetscReal *from = &bonded->shift[2 * i], *to = &mesh->shift[2 * i];
-    const PetscReal S[2] = {from[0] - to[0], from[1] - to[1]}, *position = &rve->bonded->y[2 * bonded->node_class[i]];
-
-    for (PetscInt d = 0; d < 2; ++d)
-      rve->y[2 * mesh->node_class[i] + d] = position[d] + load->F[3 * d] * S[0] + load->F[3 * d + 1] * S[1];
-  }
-  for (PetscInt c = 0; c < rve->linear->lumens; ++c) rve->y[rve->ndof + c] = rve->bonded->y[rve->bonded->ndof + c];
-  (void)LamSetConsistentStresses(rve, load, rve->y);
-}
-
-/*
-  Least-squares fit of multipliers to the bonding forces r, B^T lambda = r, from the system
-  [1 -B^T; -B 0] [v; lambda] = [-r; 0]. Multipliers in tension are set to zero.
-*/
-static PetscErrorCode FitMultipliers(LamRVE rve, const LamLoad *load, PetscBool *ok)
-{
-  LamContact *contact = rve->contact;
-  const PetscInt positions = rve->linear->positions;
-  PetscReal energy, *rhs, *solution;
-  PetscInt negative;
-  PetscBool valid;
+  LamMicrostructure bonded = rve->micro;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(contact->lambda, contact->count));
-  PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_TRUE));
-  PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
-  for (PetscInt h = 0; h < contact->count; ++h) contact->active[h] = (PetscBool)(contact->weight[h] > 0.0);
-  PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
-  LamContactSetRows(rve, 0.0);
-  LamSealSetOpen(rve);
-  PetscCall(LamRVEFactor(rve, 1.0, &negative, ok));
-  if (!*ok) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(rve->linear->n, &rhs, rve->linear->n, &solution));
-  for (PetscInt i = 0; i < positions; ++i) rhs[i] = -rve->residual[i + 2];
-  PetscCall(LamLinearSolveOnce(rve->linear, 1, rhs, solution));
-  for (PetscInt h = 0; h < contact->count; ++h)
-    contact->lambda[h] = contact->active[h] ? PetscMax(0.0, solution[positions + h]) : 0.0;
-  PetscCall(PetscFree2(rhs, solution));
+  if (!rve->bonded) {
+    bonded.interface = LAM_INTERFACE_BONDED;
+    PetscCall(LamRVECreateLike(rve, &bonded, 0, &rve->bonded)); /* an initial guess: only its state is used */
+    PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
+  }
+  rve->bonded->seal.closed = rve->seal.closed;
+  rve->bonded->seal.bulk_modulus = rve->seal.bulk_modulus;
+  if (rve->seal.closed) PetscCall(PetscArraycpy(rve->bonded->seal.water, rve->seal.water, rve->linear->lumens));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamContactStartBonded(LamRVE rve, const LamLoad *load, PetscBool *ok)
 {
+  LamResponse response;
+  const LamMesh *mesh = &rve->mesh;
+  LamRVEState from;
+
   PetscFunctionBeginUser;
-  TakeBondedPositions(rve, load);
-  PetscCall(FitMultipliers(rve, load, ok));
+  PetscCall(CreateBonded(rve));
+  from = rve->bonded_state;
+  rve->bonded->budget = rve->budget;
+  PetscCall(LamRVEStateReset(rve->bonded, from));
+  PetscCall(LamRVESolve(rve->bonded, load, from, &response));
+  LamAddWork(rve, &response);
+  *ok = LamResponseHasFields(&response);
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(PetscArraycpy(rve->contact->held, rve->residual, rve->ndof));
-  LamContactAddForce(rve, rve->contact->held);
+  for (PetscInt i = 0; i < mesh->node_count; ++i) {
+    PetscReal x[2];
+
+    LamNodePosition(rve->bonded, load->F, from->y, i, x);
+    LamPlaceNode(rve, load->F, i, x, rve->y);
+  }
+  PetscCall(PetscArraycpy(rve->y + rve->ndof, from->y + rve->bonded->ndof, rve->linear->lumens));
+  *ok = LamSetConsistentStresses(rve, load, rve->y);
+  rve->moved = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

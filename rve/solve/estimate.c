@@ -87,6 +87,7 @@ static PetscErrorCode StartContact(LamRVEEstimate e, LamRVEState from)
   }
   to->load = from->load;
   to->solved = PETSC_TRUE;
+  to->width = from->width;
   PetscFunctionReturn(0);
 }
 

@@ -9,7 +9,7 @@
   fine mesh is not solved, and the response gives the reason and the mesh. Sealed tissue, whose pressures are unknowns,
   does not use this method.
 */
-#include "contact_path.h"
+#include "contact_find.h"
 #include "mortar_impl.h"
 
 #define LARGE 2000 /* elements, from which a coarser mesh is solved first */
@@ -165,8 +165,16 @@ static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve,
   rve->moved = PETSC_TRUE;
   rve->budget = LAM_ITERATION_BUDGET;
   if (rve->contact) {
-    ProlongContact(coarse, from, rve);
-    PetscCall(LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome));
+    LamContactOutcome out;
+
+    if (from->width == 0.0) {
+      PetscCall(LamUseExactLaw(rve));
+      ProlongContact(coarse, from, rve);
+      PetscCall(LamSharpen(rve, load, NULL, LAM_NEAR_REACH, &outcome));
+    } else {
+      PetscCall(LamContactSearch(rve, load, NULL, PETSC_TRUE, &out));
+      outcome = out.found ? LAM_NEWTON_CONVERGED : LAM_NEWTON_STALLED;
+    }
   } else {
     PetscCall(LamNewtonFast(rve, load, NULL, &outcome));
     if (outcome == LAM_NEWTON_STALLED) {

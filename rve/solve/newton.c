@@ -1,20 +1,16 @@
 /*
   Equilibrium of the RVE at one load.
 
-  Method. Both tiers solve (K(x, p*, s*) + shift 1) dx = -r(x) with the residual of the energy and the tangent with
-  independent stresses (element.h). The shift is zero if K is positive definite, otherwise just large enough (inertia
-  correction). Sealed lumens add their pressures to x, and one negative eigenvalue each (turgor.c). The fast tier takes
-  full steps, shortened only if an element volume would be inverted. The safe tier minimises the energy: steps are
-  limited in length, and a watchdog allows a few steps without decrease (descent.c).
+  Method. (K(x, p*, s*) + shift 1) dx = -r(x) with the residual of the energy and the tangent with independent stresses
+  (element.h). The shift is zero if K is positive definite, otherwise just large enough (inertia correction). Sealed
+  lumens add their pressures to x, and one negative eigenvalue each (turgor.c). Steps are full, shortened only if an
+  element volume would be inverted.
 
-  References. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points);
-  Nocedal & Wright, Numerical Optimization, 3.4.
+  Reference. Magisano, Leonetti & Garcea, Int. J. Numer. Meth. Engng 109 (2017) 1237 (mixed integration points).
 */
 #include "solve.h"
 
 #define FAST_ITERATIONS 25
-#define SAFE_ITERATIONS 400
-#define ROUNDING_MARGIN 1e3  /* times the tolerance: residual that rounding of large stresses may leave */
 #define LEAST_SHIFT 1e-7     /* of the largest diagonal entry */
 #define SADDLE_RESIDUAL 1e-4 /* residual norm below which an indefinite state is taken to be near a saddle */
 
@@ -92,7 +88,7 @@ PetscBool LamAtRounding(LamRVE rve, PetscReal norm, PetscReal tolerance, PetscRe
 {
   const PetscReal extent = PetscMax(1.0, LamLargestEntry(rve->ndof, rve->y));
 
-  return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= ROUNDING_MARGIN * tolerance);
+  return (PetscBool)(largest <= 500.0 * PETSC_MACHINE_EPSILON * extent && norm <= LAM_ROUNDING_MARGIN * tolerance);
 }
 
 PetscReal LamValidStep(LamRVE rve, const LamLoad *load, const LamBorder *border, PetscReal alpha, PetscReal least)
@@ -110,10 +106,7 @@ void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal a
 {
   LamUpdateStresses(rve, load, rve->y, rve->step, LamBorderStep(border), alpha);
   for (PetscInt i = 0; i < rve->length; ++i) rve->y[i] += alpha * rve->step[i];
-  if (border) {
-    border->load = LamBorderMoved(border, load, alpha);
-    border->patience = PetscMax(0, border->patience - 1);
-  }
+  if (border) border->load = LamBorderMoved(border, load, alpha);
   ++rve->work.iterations;
 }
 
@@ -162,7 +155,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     }
     growth = norm > previous ? growth + 1 : 0;
     last = (PetscBool)(norm * PetscSqr(norm / previous) <=
-                       ROUNDING_MARGIN * tolerance); /* assuming quadratic convergence */
+                       LAM_ROUNDING_MARGIN * tolerance); /* assuming quadratic convergence */
     previous = norm;
     /* the residual may grow for a few steps while the stiff constraints are violated */
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
@@ -197,77 +190,11 @@ PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const Pe
 
   PetscFunctionBeginUser;
   PetscCall(LamImproveSoftestMode(rve, iterations, mode));
-  if (LamModeCurvature(rve, mode, image) >= 0.0) PetscFunctionReturn(0);
+  if (LamModeCurvature(rve, mode, image) >= (rve->contact ? -LAM_ZERO_MODE : 0.0)) PetscFunctionReturn(0);
   largest = LamLargestEntry(rve->linear->positions, mode);
   /* if the slope is zero, the mode's own sign */
   sign = LamModeSlope(rve, mode, residual) > LamNewtonTolerance(rve) ? -1.0 : 1.0;
   LamAddMode(rve, sign * LAM_ESCAPE_STEP / largest, mode, rve->step);
   ++rve->work.escapes;
-  PetscFunctionReturn(0);
-}
-
-/* One step of the safe tier from an assembled state; *alpha = 0: no step found. mode: the softest one of the last
-   indefinite matrix. */
-static PetscErrorCode SafeStep(LamRVE rve, const LamLoad *load, PetscInt it, PetscReal norm, LamMerit now,
-                               PetscReal mode[], PetscReal *shift, LamDescent *descent, PetscReal *alpha)
-{
-  PetscReal largest;
-  PetscBool ok;
-
-  PetscFunctionBeginUser;
-  *alpha = 0.0;
-  PetscCall(LamFactorPositive(rve, PETSC_INFINITY, shift, &ok));
-  if (!ok) PetscFunctionReturn(0);
-  PetscCall(LamSolveStep(rve, NULL));
-  if (*shift > 0.0 && LamLargestEntry(rve->ndof, rve->step) < 0.5 * LAM_ESCAPE_STEP)
-    PetscCall(LamAddNegativeCurvature(rve, 4, rve->residual, mode, rve->trial + 2));
-  largest = LamLargestEntry(rve->ndof, rve->step);
-  PetscCall(LamReportIteration(rve, "safe", it, norm, largest, *shift));
-  *alpha = largest > LAM_DESCENT_LIMIT ? LAM_DESCENT_LIMIT / largest : 1.0;
-  PetscCall(LamDescentSearch(rve, load, now, descent, alpha));
-  LamTakeStep(rve, load, NULL, *alpha);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome)
-{
-  const PetscReal tolerance = LamNewtonTolerance(rve);
-  LamDescent descent;
-  PetscReal *mode, shift = 0.0;
-  LamMerit now = {0};
-  PetscBool valid;
-
-  PetscFunctionBeginUser;
-  *outcome = LAM_NEWTON_STALLED;
-  LamForgetFactor(rve);
-  PetscCall(LamAssembleEnergy(rve, load, rve->y, &now.energy, &valid));
-  if (!valid) PetscFunctionReturn(0);
-  LamSealSetConsistent(rve, load, rve->y);
-  (void)LamSetConsistentStresses(rve, load, rve->y);
-  PetscCall(LamDescentCreate(rve, &descent));
-  LamDescentKeep(rve, now, &descent);
-  PetscCall(PetscMalloc1(rve->linear->n, &mode));
-  LamStartMode(rve, mode);
-  for (PetscInt it = 0; it < SAFE_ITERATIONS && LamMayIterate(rve); ++it) {
-    PetscReal norm, alpha;
-    PetscBool moved;
-
-    PetscCall(LamAssemble(rve, load, rve->y, &now.energy, rve->residual, &valid));
-    norm = valid ? LamResidualNorm(rve, rve->residual) : PETSC_INFINITY;
-    if (norm <= tolerance) {
-      *outcome = LAM_NEWTON_CONVERGED;
-      break;
-    }
-    PetscCall(LamDescentWatch(rve, load, now, valid, &descent, &moved));
-    if (moved) continue;
-    PetscCall(SafeStep(rve, load, it, norm, now, mode, &shift, &descent, &alpha));
-    if (LamAtRounding(rve, norm, tolerance, LamLargestEntry(rve->ndof, rve->step))) {
-      *outcome = LAM_NEWTON_CONVERGED;
-      break;
-    }
-    if (alpha == 0.0) break;
-  }
-  PetscCall(PetscFree(mode));
-  PetscCall(LamDescentDestroy(&descent));
   PetscFunctionReturn(0);
 }

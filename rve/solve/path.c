@@ -8,7 +8,7 @@
   mode, downhill, to a stable branch. (v) The reason for the end of a path is bracketed: a lumen that closes, or walls
   that lose ellipticity, which no mesh resolves.
 */
-#include "solve.h"
+#include "contact_find.h"
 
 #define MIN_SUBSTEP (1.0 / 512.0)
 #define MAX_BRANCH_SWITCHES 6
@@ -78,7 +78,7 @@ PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch
   PetscCall(LamRVEStateCreate(rve, &saddle));
   for (PetscInt k = 0; k < (rve->contact ? MAX_CONTACT_SWITCHES : MAX_BRANCH_SWITCHES) && *ok && *negative > 0; ++k) {
     LamNewtonOutcome outcome;
-    PetscReal moved = rve->contact ? 0.0 : kick; /* Newton may return to a saddle, descent does not */
+    PetscReal moved = 0.0;
 
     LamKeepState(rve, load, 0, saddle);
     PetscCall(LamSoftestMode(rve, &rve->lowest_eigenvalue, mode));
@@ -87,8 +87,8 @@ PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch
                              "  saddle: %d negative eigenvalues, lowest %.3e; leaving it\n", (int)*negative,
                              (double)rve->lowest_eigenvalue));
     LamAddMode(rve, kick / LamLargestEntry(rve->linear->positions, mode), mode, rve->y);
-    PetscCall(rve->contact ? LamContactNewton(rve, load, NULL, LAM_NEAR_REACH, &outcome)
-                           : LamNewtonSafe(rve, load, &outcome));
+    (void)LamSetConsistentStresses(rve, load, rve->y);
+    PetscCall(LamMinimise(rve, load, NULL, LamNewtonTolerance(rve), &outcome));
     for (PetscInt i = 0; i < rve->ndof; ++i) moved = PetscMax(moved, PetscAbsReal(rve->y[i] - saddle->y[i]));
     if (outcome == LAM_NEWTON_CONVERGED && moved > 0.1 * kick) {
       ++*branch;
@@ -137,7 +137,7 @@ static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *lo
   }
   if (outcome == LAM_NEWTON_STALLED && thorough) LamMoveAffinely(rve, from, load_from, load_to);
   if (outcome == LAM_NEWTON_NEAR_SADDLE || (outcome == LAM_NEWTON_STALLED && thorough))
-    PetscCall(LamNewtonSafe(rve, load_to, &outcome));
+    PetscCall(LamMinimise(rve, load_to, NULL, LamNewtonTolerance(rve), &outcome));
   if (rve->work.escapes > escapes) ++*branch;
   out->collapsed = shut;
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);

@@ -8,6 +8,7 @@ PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
   (*rve)->comm = comm;
   (*rve)->linear = &(*rve)->systems[0];
   (*rve)->wanted = LAM_WANT_ALL;
+  (*rve)->strategy = LAM_ONE_STEP;
   PetscFunctionReturn(0);
 }
 
@@ -92,7 +93,6 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
 /* Set-up that needs no MPI: mesh, element geometry, sparsity pattern, work arrays. */
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
-  LamCouplings couplings = {0};
   PetscInt cells, lumens;
 
   PetscFunctionBeginUser;
@@ -105,11 +105,10 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(LamGeometryCreate(rve));
   if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
-    couplings =
-        (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
+    PetscCall(LamSmoothCreate(rve));
+  } else {
+    PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, rve->linear));
   }
-  PetscCall(LamLinearCreate(&rve->mesh, &couplings, lumens, rve->linear));
-  if (rve->contact) PetscCall(LamContactSetMatrix(rve->linear, rve->contact));
   rve->ndof = 2 * rve->mesh.class_count;
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
@@ -125,13 +124,6 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
   PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
   PetscCall(SetUpArrays(rve));
   PetscCall(LamLinearCreateMatrix(rve->comm, rve->linear));
-  if (rve->contact) {
-    LamMicrostructure bonded = rve->micro;
-
-    bonded.interface = LAM_INTERFACE_BONDED;
-    PetscCall(LamRVECreateLike(rve, &bonded, 0, &rve->bonded)); /* an initial guess: only its state is used */
-    PetscCall(LamRVEStateCreate(rve->bonded, &rve->bonded_state));
-  }
   rve->is_set_up = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -159,7 +151,8 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
   PetscCall(LamContactDestroy(&(*rve)->contact));
-  for (PetscInt k = 0; k < 2; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
+  PetscCall(LamSmoothDestroy(&(*rve)->smooth));
+  for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
   PetscCall(LamMeshDestroy(&(*rve)->mesh));
   PetscCall(PetscFree((*rve)->law));
   PetscCall(LamMicrostructureDestroy(&(*rve)->micro));
@@ -171,10 +164,16 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscFunctionReturn(0);
 }
 
+/* Those of the exact law: positions, pressures, multipliers. */
+static PetscInt CountUnknowns(LamRVE rve)
+{
+  return rve->systems[LAM_SYSTEM_BASE].n + (rve->contact ? rve->contact->count : 0);
+}
+
 PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
 {
   PetscFunctionBeginUser;
-  *unknowns = rve->linear->n;
+  *unknowns = CountUnknowns(rve);
   PetscFunctionReturn(0);
 }
 
@@ -201,10 +200,29 @@ PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+/* Sets what tells the laws of contact apart, and the contact pressures of the smooth one. */
+static PetscErrorCode FillContact(LamRVE rve, const LamLoad *load, LamResponse *response)
+{
+  const LamDepths depths = LamFindDepths(rve, load);
+  LamTouchForces forces = {.facing = 1.0};
+  PetscReal sum;
+
+  PetscFunctionBeginUser;
+  response->contact_width = LamIsExact(rve) ? 0.0 : rve->smooth->width;
+  if (!LamIsExact(rve)) PetscCall(LamSmoothPressures(rve, load, &forces));
+  sum = forces.facing + forces.third + forces.lumen;
+  response->third_fraction = sum > 0.0 ? forces.third / sum : 0.0;
+  response->lumen_contact = sum > 0.0 ? forces.lumen / sum : 0.0;
+  /* of facing walls in the exact law, the indicators measure it between the walls themselves */
+  response->max_penetration = LamIsExact(rve) ? depths.other : PetscMax(depths.facing, depths.other);
+  PetscFunctionReturn(0);
+}
+
 /* Fills the fields of the solution in rve->y, whose consistent tangent is factored. */
 static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   PetscFunctionBeginUser;
+  if (rve->contact) PetscCall(FillContact(rve, load, response));
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
   /* the factorisation assumed to be of a nearby matrix was not */
   if (!rve->contact && response->status == LAM_CONVERGED && rve->linear->negative > LamExpectedNegative(rve))
@@ -245,6 +263,7 @@ PetscErrorCode LamEndResponse(LamRVE rve, const LamLoad *load, LamRVEState state
   response->stable = (PetscBool)(response->status == LAM_CONVERGED);
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
   LamKeepState(rve, load, response->branch, state);
+  if (rve->contact) LamKeepEnergy(response, state);
   PetscFunctionReturn(0);
 }
 
@@ -253,11 +272,12 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_SOLVE;
-  response->unknowns = rve->linear->n;
+  response->unknowns = CountUnknowns(rve);
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
   LamForgetFactor(rve);
+  if (rve->contact) PetscCall(LamSmoothReset(rve));
   LamTakeJunctions(rve, state);
   PetscFunctionReturn(0);
 }
@@ -298,16 +318,26 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 {
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
+  const PetscBool looks =
+      (PetscBool)((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved && !rve->looks_back);
+  LamRVEState before = NULL;
 
   PetscFunctionBeginUser;
+  if (looks) PetscCall(LamRVEStateCreate(rve, &before));
+  if (looks) PetscCall(LamRVEStateCopy(state, before));
   PetscCall(LamBeginResponse(rve, load, state, response));
   PetscCall(LamCheckLoad(load, response));
-  if (response->status == LAM_INVALID_F) PetscFunctionReturn(0);
+  if (response->status == LAM_INVALID_F) {
+    PetscCall(LamRVEStateDestroy(&before));
+    PetscFunctionReturn(0);
+  }
   /* after an interrupted solve, before the first assembly: the rest of an interrupted batch costs nothing */
   rve->work.stopped = (PetscBool)(interrupted && rve->interrupt && rve->interrupt(rve->interrupt_ctx));
   if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
+  if (looks) PetscCall(LamSeeJump(rve, before, state, response));
+  PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);
 }

@@ -1,11 +1,13 @@
 /*
   Solvers for equilibrium states of the RVE.
 
-    newton.c newton_flow.c descent.c      one equilibrium from an initial guess: fast, flow and safe tiers
+    newton.c newton_flow.c                one bonded equilibrium from an initial guess: fast and flow tiers
+    minimise.c                            a minimum of the energy, with contact or without
     border.c border.h                     components of F as unknowns, for prescribed stress
     path.c                                initial guess, load substeps, escape from saddles, failure reasons
-    contact_step.c contact_update.c contact_newton.c contact_safe.c     one contact equilibrium from an initial guess
-    contact_start.c contact_try.c contact_walk.c contact_path.c         initial guesses, acceptance, load paths
+    sharpen.c                             equilibrium with the exact law of contact, from a state near it
+    contact_start.c contact_find.c contact_path.c     contact: initial guesses, a state at a load, load paths
+    contact_jump.c                        whether the branch of the state before has ended
     nested.c                              initial guess from the solution on a coarser mesh
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
     estimate.c                            error estimate of P from a mesh with half as many elements
@@ -20,14 +22,13 @@
 
 /* ---- newton.c ---- */
 typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED } LamNewtonOutcome;
-/* Solves for equilibrium at `load`, starting from rve->y. Fast: full Newton steps. Safe: inertia-corrected steps that
-   lower the energy and leave saddles; never returns NEAR_SADDLE. border: NULL, or the free components of F; the load is
-   then border->load. */
+/* Solves for equilibrium at `load`, starting from rve->y, by full Newton steps. border: NULL, or the free components of
+   F; the load is then border->load. */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
-PetscErrorCode LamNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
 /* The same for unstable initial guesses: the residual may grow. shut: the cell whose lumen closed during the iteration,
    which ends it; -1: none. */
 PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome, PetscInt *shut);
+#define LAM_ROUNDING_MARGIN 1e3 /* times the tolerance: residual that rounding of large stresses may leave */
 /* Tolerance on the residual norm: the larger of 1e-11, rve->tolerance and the rounding error of the stiff forces. */
 PetscReal LamNewtonTolerance(LamRVE rve);
 /* Factors K + shift 1 with the first shift of an increasing sequence that leaves no more negative eigenvalues than
@@ -60,34 +61,19 @@ PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iterat
 /* Adds a downhill multiple of the softest mode to rve->step, if the mode has negative curvature. Used for small Newton
    steps of an indefinite matrix: near a saddle the residual has almost no component along that mode, and Newton alone
    is slow. iterations: inverse iterations, from `mode` [n]; image [n]: work space. */
-#define LAM_ESCAPE_STEP 0.01 /* largest entry of that multiple, in apothems */
+#define LAM_PROXIMAL 1e-7        /* shift of every step of contact tissue: keeps free cells from turning by rounding */
+#define LAM_SADDLE_RESIDUAL 1e-3 /* norm below which small steps of an indefinite contact state mean a saddle nearby   \
+                                  */
+#define LAM_CREEPING 0.6         /* the same for small steps longer than this share of the previous one */
+#define LAM_ESCAPE_STEP 0.01     /* largest entry of that multiple, in apothems */
 PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const PetscReal residual[], PetscReal mode[],
                                        PetscReal image[]);
 
-/* ---- descent.c ---- */
-#define LAM_DESCENT_LIMIT 0.05 /* of a step of a safe tier, in apothems */
-typedef struct {
-  PetscReal energy, violation; /* of walls, turgor and cohesion; sum D max(0, -gap) */
-} LamMerit;
-typedef struct {
-  PetscReal *y, *lambda; /* the best point so far */
-  LamMerit merit;        /* its merit, if `known` */
-  PetscReal mu, limit;   /* weight of the violation; limit of the step length, lower after a return, apothems */
-  PetscReal rounding;    /* of the energy */
-  PetscInt without_decrease;
-  PetscBool monotone, known; /* monotone: line search on the next step */
-} LamDescent;
-PetscErrorCode LamDescentCreate(LamRVE rve, LamDescent *descent);
-PetscErrorCode LamDescentDestroy(LamDescent *descent);
-/* Merit of the contact state last evaluated. */
-LamMerit LamMeritOf(LamRVE rve, PetscReal energy);
-/* If a line search is due: halves the step until the merit decreases sufficiently; *alpha = 0 if it does not. */
-PetscErrorCode LamDescentSearch(LamRVE rve, const LamLoad *load, LamMerit now, LamDescent *descent, PetscReal *alpha);
-/* Stores the present point as the best one. */
-void LamDescentKeep(LamRVE rve, LamMerit merit, LamDescent *descent);
-/* Stores the point of least merit; returns to it after too many steps without decrease. *moved: rve->y was reset. */
-PetscErrorCode LamDescentWatch(LamRVE rve, const LamLoad *load, LamMerit now, PetscBool valid, LamDescent *descent,
-                               PetscBool *moved);
+/* ---- minimise.c ---- */
+/* Finds a minimum of the energy with the smooth law of contact, from rve->y and the independent stresses, to the
+   tolerance of the residual norm. border: as in LamNewtonFast. */
+PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal tolerance,
+                           LamNewtonOutcome *outcome);
 
 /* ---- path.c ---- */
 /* Rotation angle of the polar decomposition of the in-plane part of F. */
@@ -107,53 +93,16 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
 PetscErrorCode LamLeaveSaddles(LamRVE rve, const LamLoad *load, PetscInt *branch, PetscInt *negative, PetscBool *ok);
 PetscErrorCode LamRefuseSaddle(LamRVE rve, PetscInt negative, LamResponse *response);
 
-/* ---- contact_step.c ---- */
-#define LAM_CONTACT_PROXIMAL 1e-8 /* shift of every contact step; keeps the matrix regular if a cell has no contact */
-/* Tolerance on max |min(lambda, c gap)|. */
-static inline PetscReal LamGapTolerance(LamRVE rve)
-{
-  return PetscMax(1e-10, rve->tolerance);
-}
-typedef struct {
-  PetscReal *rhs, *solution, *image; /* work space */
-  PetscReal *lambda;                 /* [multipliers] after the step */
-  PetscReal *first;                  /* solution computed with the last factorisation */
-  PetscBool *factored;               /* [multipliers] active set of the last factorisation */
-  PetscBool updates;                 /* systems of other active sets may be solved by updating that factorisation */
-  PetscReal shift;                   /* of the last factorisation */
-  PetscReal floor;                   /* minimum shift; a larger one gives shorter steps */
-  PetscReal before;                  /* largest entry of the previous step */
-  LamBorder *border;                 /* borrowed; NULL: F is prescribed */
-} LamContactStep;
-PetscErrorCode LamContactStepCreate(LamRVE rve, LamBorder *border, LamContactStep *step);
-PetscErrorCode LamContactStepDestroy(LamContactStep *step);
-/* Call after LamAssemble. Subtracts the held forces from rve->residual; norm: of the residual including contact
-   forces. */
-void LamContactResidual(LamRVE rve, LamContactStep *step, PetscReal *norm);
-/* Computes solution [n] for the current active set from `first`, the solution for the active set `before`, whose matrix
-   is factored. *ok is PETSC_FALSE if the sets differ in too many hats or the new matrix has too many negative
-   eigenvalues. */
-PetscErrorCode LamContactUpdateStep(LamRVE rve, const PetscBool before[], const PetscReal first[], PetscReal compliance,
-                                    PetscReal solution[], PetscBool *ok);
-/* Computes rve->step and step->lambda at the assembled state, after LamContactAddCurvature; norm: of its residual. *ok
-   is PETSC_FALSE if no shift gives a matrix with the expected inertia. */
-PetscErrorCode LamContactSolveStep(LamRVE rve, PetscReal norm, PetscReal compliance, LamContactStep *step,
-                                   PetscBool *ok);
-/* Updates positions, wall stresses, multipliers and free components of F by alpha times the step. */
-void LamContactTakeStep(LamRVE rve, const LamLoad *load, PetscReal alpha, const LamContactStep *step);
-
-/* ---- contact_newton.c, contact_safe.c, contact_path.c ---- */
-/* Solves for contact equilibrium at `load`, starting from rve->y, contact->lambda and the independent stresses. Fast:
-   full steps; a step larger than `reach` (apothems) returns STALLED; reach = LAM_FAR: the initial guess may be far from
-   contact, and steps are shortened. Safe: descent on the energy, starting from consistent stresses. border: as in
-   LamNewtonFast. */
-#define LAM_FAR 0.0
-#define LAM_NEAR_REACH 0.5 /* from a near initial guess */
-PetscErrorCode LamContactNewton(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal reach,
-                                LamNewtonOutcome *outcome);
-PetscErrorCode LamContactNewtonSafe(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome);
-/* As LamFollowPath, for contact tissue; returns the solution in rve->y and contact->lambda. */
+/* ---- contact_path.c ---- */
+/* As LamFollowPath, for contact tissue; returns the solution in rve->y, with the multipliers and active set of the
+   indicators. */
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+
+/* ---- contact_jump.c ---- */
+/* Stores energy and first derivatives of a response with fields in its state. */
+void LamKeepEnergy(const LamResponse *response, LamRVEState state);
+/* Sets jumped and energy_released of the response of `state`, which was solved from `before`. */
+PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response);
 
 /* ---- nested.c ---- */
 /* Whether a solve from `state` should start from the solution on a coarser mesh. */

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 12 /* six of the state, six of its bonded state */
+#define MOST_PARTS 8
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -14,19 +14,18 @@ typedef struct {
 /* Those that a state has: bonded tissue has no multipliers. */
 static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
 {
+  const Part all[MOST_PARTS] = {{s->y, (size_t)s->n * sizeof(*s->y)},
+                                {s->lambda, (size_t)s->multipliers * sizeof(*s->lambda)},
+                                {s->hats, (size_t)s->faces * sizeof(*s->hats)},
+                                {&s->load, sizeof(s->load)},
+                                {&s->branch, sizeof(s->branch)},
+                                {&s->solved, sizeof(s->solved)},
+                                {&s->width, sizeof(s->width)},
+                                {s->energy, s->multipliers ? sizeof(s->energy) : 0}};
   PetscInt count = 0;
 
-  for (; s; s = s->bonded) {
-    const Part all[] = {{s->y, (size_t)s->n * sizeof(*s->y)},
-                        {s->lambda, (size_t)s->multipliers * sizeof(*s->lambda)},
-                        {s->hats, (size_t)s->faces * sizeof(*s->hats)},
-                        {&s->load, sizeof(s->load)},
-                        {&s->branch, sizeof(s->branch)},
-                        {&s->solved, sizeof(s->solved)}};
-
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(all); ++k)
-      if (all[k].bytes) parts[count++] = all[k];
-  }
+  for (PetscInt k = 0; k < MOST_PARTS; ++k)
+    if (all[k].bytes) parts[count++] = all[k];
   return count;
 }
 
@@ -86,7 +85,6 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   (*state)->faces = rve->contact ? rve->contact->face_count : 0;
   PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
                          &(*state)->hats));
-  if (rve->bonded) PetscCall(LamRVEStateCreate(rve->bonded, &(*state)->bonded));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
@@ -104,7 +102,8 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->load = LAM_REFERENCE_LOAD;
   state->branch = 0;
   state->solved = PETSC_FALSE;
-  if (rve->bonded) PetscCall(LamRVEStateReset(rve->bonded, state->bonded));
+  state->width = 0.0;
+  for (PetscInt k = 0; k < 8; ++k) state->energy[k] = NAN;
   PetscFunctionReturn(0);
 }
 
@@ -112,7 +111,6 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(LamRVEStateDestroy(&(*state)->bonded));
   PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
@@ -128,6 +126,7 @@ void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState 
     state->hats[f][1] = rve->contact->faces[f].last;
   }
   state->solved = PETSC_TRUE;
+  state->width = rve->contact && !rve->contact->exact ? rve->smooth->width : 0.0;
   state->load = *load;
   state->branch = branch;
 }

@@ -166,6 +166,23 @@ static void PrintLocalisation(const LamResponse *r, PetscReal MPa)
          (double)LamBandAngle(r->localisation_mode));
 }
 
+#define SEEN 0.005 /* share of the contact force that is told */
+
+/* What is not seen in the columns of contact: another law, walls that do not face each other, the end of a branch. */
+static void PrintOddContact(const LamResponse *response, PetscReal MPa)
+{
+  if (response->contact_width > 0)
+    printf("      by the smooth law of contact, width %.3g of the apothem\n", (double)response->contact_width);
+  if (response->third_fraction > SEEN)
+    printf("      %.2g %% of the contact force acts between walls that do not face each other at rest\n",
+           (double)(100 * response->third_fraction));
+  if (response->lumen_contact > SEEN)
+    printf("      %.2g %% of the contact force acts within lumens\n", (double)(100 * response->lumen_contact));
+  if (response->jumped)
+    printf("      the branch of the state before has ended: this is the next minimum, %.3g MPa lower in energy\n",
+           (double)(response->energy_released * MPa));
+}
+
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state)
 {
@@ -188,6 +205,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   if (LamResponseHasFields(response) && !HasTurgorOfLoad(response))
     printf("      pressure in the lumens %.4g MPa, spread %.3g MPa\n", (double)(response->turgor_mean * MPa),
            (double)(response->turgor_spread * MPa));
+  PrintOddContact(response, MPa);
   PrintLocalisation(response, MPa);
   if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
   PetscCall(FlushOutput());

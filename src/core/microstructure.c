@@ -11,6 +11,7 @@
 
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
+const char *const LamSharpnessNames[] = {LAM_SHARPNESSES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
 
 /* 64-bit FNV-1a (Fowler, Noll, Vo): an identifier, not cryptographic. */
@@ -64,6 +65,8 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   DescribeWall(&micro->wall, out);
   fprintf(out, ", \"interface\": {\"law\": \"%s\"", LamInterfaceLawNames[micro->interface]);
   if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
+  if (micro->interface == LAM_INTERFACE_CONTACT && micro->sharpness == LAM_SHARPNESS_SMOOTH)
+    fprintf(out, ", \"width\": %.12g", Clean(micro->contact_width));
   fprintf(out, "}");
   if (micro->cell) {
     fprintf(out, ", \"cell\": [");
@@ -193,14 +196,16 @@ static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
   const char *interface;
   int cells[2], along, through, found;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:{s:s, s?F}, s?o}", "wall_thickness",
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:{s:s, s?F, s?F}, s?o}", "wall_thickness",
                   &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
                   "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
-                  "law", &interface, "clearance", &m->clearance, "cell", &cells_that_differ))
+                  "law", &interface, "clearance", &m->clearance, "width", &m->contact_width, "cell",
+                  &cells_that_differ))
     return PETSC_FALSE;
   found = Find(LAM_INTERFACE_LAW_COUNT, LamInterfaceLawNames, interface);
   if (found < 0 || cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
   m->interface = (LamInterfaceLawType)found;
+  m->sharpness = m->contact_width > 0 ? LAM_SHARPNESS_SMOOTH : LAM_SHARPNESS_EXACT;
   for (int i = 0; i < 2; i++) m->cells[i] = cells[i];
   m->along = along;
   m->through = through;

@@ -43,6 +43,15 @@ static const LamKey tissue_keys[] = {
      .example = "0.1 um",
      .help = "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; "
              "only with law `contact`."},
+    {NAME_OF("rve.interface.sharpness", LamSharpnessNames, LAM_SHARPNESS_COUNT), INTO(LamScene, micro.sharpness),
+     .default_value = "auto",
+     .help = "Law of contact: `exact`: gaps are never negative; a state that it does not have is told with the smooth "
+             "law; `smooth`: contact pressure falls over a small gap, so that responses are smooth in F; "
+             "`auto`: `exact`. Only with law `contact`."},
+    {LENGTH("rve.interface.width", "um"), INTO(LamScene, micro.contact_width), ABOVE(0),
+     .default_words = "0.003 of the apothem", .example = "0.5 um",
+     .help = "Gap at which contact pressure has fallen to none; only with sharpness `smooth`. Tables of contact tissue "
+             "need the fewest solves at about 0.01 of the apothem; `contact_error` of a response tells its price."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
      .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under "
@@ -72,9 +81,9 @@ static const LamKey tissue_keys[] = {
      .help = "Where Newton iterations of the RVE end: residual (forces over (C1 + C2) apothem) and violation of "
              "contact. Not below rounding."},
     {NAME_OF("rve.strategy", LamStrategyNames, LAM_STRATEGY_COUNT), INTO(LamScene, strategy),
-     .default_value = "two_step",
-     .help = "How contact is reached: from the bonded state (`two_step`) or at once (`one_step`). No effect on bonded "
-             "tissue."},
+     .default_value = "one_step",
+     .help = "How contact without a state before is reached: at once (`one_step`) or from the bonded state "
+             "(`two_step`). No effect on bonded tissue."},
 };
 LAM_KEY_TABLE(LamTissueKeys, tissue_keys);
 
@@ -117,6 +126,23 @@ PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scal
   PetscFunctionReturn(0);
 }
 
+#define USUAL_WIDTH 0.003 /* apothems, of the smooth law: of single states (docs/theory/contact.md) */
+#define LARGEST_WIDTH 0.1
+
+static PetscErrorCode BuildContactLaw(const LamNode *rve, LamMicrostructure *micro)
+{
+  const LamNode *sharpness = LamNodeFind(rve, "interface.sharpness"), *width = LamNodeFind(rve, "interface.width");
+  const PetscBool smooth = (PetscBool)(micro->sharpness == LAM_SHARPNESS_SMOOTH);
+
+  PetscFunctionBeginUser;
+  if (micro->interface == LAM_INTERFACE_BONDED) LamSceneCheckName(!sharpness, sharpness, LAM_BONDED_PARTS);
+  LamSceneCheckName(!width || smooth, width, "says nothing of the exact law; write sharpness: smooth, or leave it out");
+  LamSceneCheck(!width || micro->contact_width <= LARGEST_WIDTH, width,
+                "is more than a tenth of the apothem; write less");
+  if (smooth && !width) micro->contact_width = USUAL_WIDTH;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
 {
   const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
@@ -144,6 +170,7 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
     LamSceneCheck(!(scene->cohesion > 0.0), LamNodeFind(rve, "interface.cohesion"), LAM_BONDED_PARTS);
     LamSceneCheck(!(micro->clearance > 0.0), clearance, LAM_BONDED_PARTS);
   }
+  PetscCall(BuildContactLaw(rve, micro));
   PetscCall(BuildTurgor(root, scene));
   PetscCall(LamSceneBuildCells(root, scene));
   PetscCall(LamSceneCheckClearance(clearance, scales, micro));

@@ -42,7 +42,7 @@ PetscErrorCode LamMeshesSetWanted(LamMeshes *meshes, LamWanted wanted)
 {
   PetscFunctionBeginUser;
   for (PetscInt m = 0; m < meshes->count; m++)
-    PetscCall(LamRVESetWanted(meshes->rve[m], m ? wanted & ~LAM_WANT_DERIVATIVES : wanted));
+    PetscCall(LamRVESetWanted(meshes->rve[m], m ? wanted & ~(LAM_WANT_DERIVATIVES | LAM_WANT_JUMPS) : wanted));
   PetscFunctionReturn(0);
 }
 

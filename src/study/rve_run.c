@@ -31,7 +31,8 @@ static LamWanted Wanted(const LamRVERun *run)
 
   if (run->derivatives) wanted |= LAM_WANT_DERIVATIVES;
   if (run->walls || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
-  return run->out_path ? LAM_WANT_ALL : wanted;
+  if (run->out_path) wanted = LAM_WANT_ALL;
+  return wanted | LAM_WANT_JUMPS;
 }
 
 PetscErrorCode LamRVERunPrepare(LamRVERun *run)

@@ -26,7 +26,7 @@ static const char *const figure_names[FIGURES] = {"iterations", "factorisations"
 
 /* Of the states of a box, or of its dry ones. */
 typedef struct {
-  int count, solved, floating;
+  int count, solved, floating, exact;
   double seconds;           /* of all states */
   double *figures[FIGURES]; /* [count] of those that are solved, owned */
 } Tally;
@@ -56,6 +56,7 @@ static void Count(const RandomContact *s, const LamResponse *r, Tally *tally)
   tally->seconds += r->seconds;
   if (!IsSolved(r)) return;
   tally->floating += r->floating_cells > 0;
+  tally->exact += r->contact_width == 0.0;
   tally->figures[ITERATIONS][tally->solved] = r->newton_iterations;
   tally->figures[FACTORISATIONS][tally->solved] = r->factorisations;
   tally->figures[MS][tally->solved] = 1e3 * r->seconds;
@@ -69,9 +70,10 @@ static void PrintSpread(Tally *t, Figure f)
 
 static void PrintTallies(ContactBox box, Tallies *t)
 {
-  printf("%s: %d of %d converged and stable (%.1f %%), of which %d floating; of %d dry ones %d; %.0f s; others:",
+  printf("%s: %d of %d converged and stable (%.1f %%), of which %d floating, %d by the exact law; of %d dry ones %d; "
+         "%.0f s; others:",
          contact_box_names[box], t->all.solved, t->all.count, 100.0 * t->all.solved / t->all.count, t->all.floating,
-         t->dry.count, t->dry.solved, t->all.seconds);
+         t->all.exact, t->dry.count, t->dry.solved, t->all.seconds);
   for (int status = 0; status < LAM_STATUS_COUNT; status++)
     if (status != LAM_CONVERGED && t->by_status[status]) printf(" %d %s", t->by_status[status], LamStatusNames[status]);
   printf("\n  %-15s %9s %9s %9s  %9s %9s %9s\n", "solved states", "median", "90 %", "largest", "dry ones", "90 %",

@@ -346,7 +346,7 @@ static PetscErrorCode ContactPrinciple(void)
       double difference[PRINCIPLE_LOADS];
       int converged;
 
-      PetscCall(ComputePrinciple(kappa, along, along / 3, difference, &converged));
+      PetscCall(ComputePrinciple(ContactTissue(along, along / 3), kappa, difference, &converged));
       printf("%-9g %-6d %-10.2e %-13.2e %-10.2e %d of %d\n", kappa, along, difference[0], difference[1], difference[2],
              converged, PRINCIPLE_LOADS * PRINCIPLE_PAIRS);
     }

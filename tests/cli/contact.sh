@@ -12,7 +12,7 @@ number() { grep -oE "\"$1\": *[-0-9.e+]+" out.txt | sed 's/.*: *//'; }
 
 # the states of the examples have answers, and members that tell how far the cells are apart
 for name in shear-contact shear-dry; do
-  expect 0 -o 'contact: cohesion .* strategy two_step' "$lamella" check "$source/tests/scenes/$name.yaml"
+  expect 0 -o 'contact: cohesion .* strategy one_step' "$lamella" check "$source/tests/scenes/$name.yaml"
 done
 expect 0 "$lamella" rve "$source/tests/scenes/shear-contact.yaml" --json
 states=$(wc -l <out.txt)
@@ -27,6 +27,20 @@ unknowns=$(number unknowns | head -1)
 expect 0 "$lamella" check "$source/tests/scenes/shear-contact.yaml" --json
 [ "$(number unknowns)" = "$unknowns" ] || fail "check predicts $(number unknowns) unknowns, rve has $unknowns"
 expect 0 -o '"P_cohesion": \[' "$lamella" rve "$source/tests/scenes/shear-contact.yaml" --json --tangent
+
+# the law of contact: exact, or smooth with its width and error
+number contact_width | awk '$1 != 0 { exit 1 }' || fail "not all states are exact: $(cat out.txt)"
+sed 's/law: contact,/law: contact, sharpness: smooth,/' "$source/tests/scenes/shear-contact.yaml" >smooth.yaml
+expect 0 "$lamella" rve smooth.yaml --json --tangent
+number contact_width | awk '!($1 > 0) { exit 1 }' && number contact_error | awk '!($1 > 0 && $1 < 0.1) { exit 1 }' ||
+  fail "the smooth law does not tell its width and error: $(cat out.txt)"
+sed 's/law: contact,/law: contact, width: 0.5 um,/' "$source/tests/scenes/shear-contact.yaml" >width.yaml
+expect 2 -e 'width.yaml:[0-9]*:.*width.*says nothing of the exact law' "$lamella" check width.yaml
+sed 's/law: contact,/law: contact, sharpness: smooth, width: 0.5 um,/' "$source/tests/scenes/shear-contact.yaml" >width.yaml
+expect 0 "$lamella" rve width.yaml --json
+number contact_width | awk '($1 - 0.5 / 75)^2 > 1e-16 { exit 1 }' || fail "not the width that the scene asks for: $(cat out.txt)"
+sed 's/law: contact, cohesion: 0.001 MPa/law: bonded, sharpness: smooth/' "$source/tests/scenes/shear-contact.yaml" >bonded.yaml
+expect 2 -e 'bonded.yaml:[0-9]*:.*sharpness.*contradicts law: bonded' "$lamella" check bonded.yaml
 
 # the table has the columns of contact, that of bonded tissue has not
 scene "0.001 MPa" "{F: [[1, 0], [0, 1]]}" "{ramp: {to: [[1, 0.04], [0, 1]], steps: 2}}"

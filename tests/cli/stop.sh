@@ -20,9 +20,9 @@ stop() {
   [ ! -e out.h5.lock ] || fail "$1: the lock is left behind"
 }
 
-stop TERM 143 '^  fast    0'
-stop INT 130 '^  contact   0'
-stop USR1 143 '^  contact   1'
+stop TERM 143 '^  least   0'
+stop INT 130 '^  least   2'
+stop USR1 143 '^  exact   0'
 
 # a fault of memory is told in words (by the sanitizer in its own) before it ends the program
 "$lamella" rve fine.yaml --quiet >out.txt 2>err.txt &

@@ -11,6 +11,7 @@
 #undef PetscSinReal
 #undef PetscCosReal
 #undef PetscFloorReal
+#undef PetscExpReal
 #undef PETSC_PI
 #undef PETSC_MACHINE_EPSILON
 #define PetscReal EXTENDED_REAL
@@ -21,12 +22,17 @@
 #define PetscSinReal EXTENDED_FUNCTION(sin)
 #define PetscCosReal EXTENDED_FUNCTION(cos)
 #define PetscFloorReal EXTENDED_FUNCTION(floor)
+#define PetscExpReal EXTENDED_FUNCTION(exp)
 #define cbrt EXTENDED_FUNCTION(cbrt)
 #define expm1 EXTENDED_FUNCTION(expm1)
 #define hypot EXTENDED_FUNCTION(hypot)
 #define PETSC_PI EXTENDED_PI
 #define PETSC_MACHINE_EPSILON EXTENDED_EPSILON
 #include "extended_names.h"
+
+/* it takes a response in double precision */
+#include <lamella/ellipticity.h>
+#define LamResponseFindBand(response) ((void)(response))
 
 #include "../../src/core/lattice.c"
 #include "../../rve/cells/mesh.c"
@@ -41,6 +47,9 @@
 #include "../../rve/contact/mortar.c"
 #include "../../rve/contact/mortar_segments.c"
 #include "../../rve/assembly/contact.c"
+#include "../../rve/contact/smooth.c"
+#include "../../rve/contact/touching.c"
+#include "../../rve/assembly/smooth_contact.c"
 #include "../../rve/linear/linear.c"
 #include "../../rve/measure/homogenise.c"
 
@@ -166,11 +175,17 @@ static PetscErrorCode Create(const ExtendedCase *c, LamRVE *out)
   PetscCall(LamGeometryCreate(rve));
   if (c->contact) {
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
-    couplings =
-        (LamCouplings){rve->contact->face_count, rve->contact->chain, rve->contact->hats, rve->contact->classes};
+    rve->contact->exact = PETSC_TRUE;
+    couplings = (LamCouplings){.count = rve->contact->face_count,
+                               .size = rve->contact->chain,
+                               .multipliers = rve->contact->hats,
+                               .classes = rve->contact->classes};
   }
   PetscCall(LamLinearCreate(&rve->mesh, c->contact ? &couplings : NULL, 0, rve->linear));
-  if (c->contact) PetscCall(LamContactSetMatrix(rve->linear, rve->contact));
+  if (c->contact) {
+    PetscCall(LamContactSetMatrix(rve->linear, rve->contact));
+    LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
+  }
   rve->ndof = rve->length = 2 * rve->mesh.class_count;
   PetscCall(
       PetscCalloc4(rve->ndof, &rve->y, rve->linear->n, &rve->step, rve->ndof, &rve->trial, rve->ndof, &rve->residual));
@@ -218,9 +233,9 @@ static PetscErrorCode Linearise(LamRVE rve, const LamLoad *load, PetscReal gradi
   PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the start is inside out");
   PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
   if (rve->contact) {
-    PetscCall(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE));
+    PetscCall(LamContactEvaluate(rve, load, rve->y));
     LamContactAddCurvature(rve);
-    LamContactSetRows(rve, 0);
+    LamContactSetRows(rve);
   }
   CopyResidual(rve, gradient);
   *norm = 0;

@@ -11,7 +11,7 @@ for rank in 1 2; do
   rm -f out.h5 err.txt
   mpirun -n 2 "$lamella" rve fine.yaml --json --monitor -o out.h5 >out.txt 2>err.txt &
   run=$!
-  until grep -qs 'contact   0' err.txt || ! kill -0 $run 2>/dev/null; do sleep 0.05; done
+  until grep -qs 'exact   0' err.txt || ! kill -0 $run 2>/dev/null; do sleep 0.05; done
   ends TERM 143 $run "$(pgrep -P $run | sed -n ${rank}p)"
   [ "$(grep -c converged out.txt)" -lt 20 ] || fail "rank $rank: the run went on to its end"
   [ ! -e out.h5.lock ] || fail "rank $rank: the lock is left behind"

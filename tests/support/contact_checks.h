@@ -63,7 +63,7 @@ PetscErrorCode ComputeStaticTractions(double strain, double turgor, double cohes
 #define PRINCIPLE_LOADS 3
 /* Turgor and cohesion act through their sum s = p + g: P + p J F^-T at equal s, for pairs (p, g). Returns the largest
    difference of a component from that of the first pair, over s. bulk_modulus in C1. */
-PetscErrorCode ComputePrinciple(double bulk_modulus, PetscInt along, PetscInt through,
-                                double difference[PRINCIPLE_LOADS], int *converged);
+PetscErrorCode ComputePrinciple(LamMicrostructure micro, double bulk_modulus, double difference[PRINCIPLE_LOADS],
+                                int *converged);
 
 #endif

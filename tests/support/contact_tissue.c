@@ -58,13 +58,14 @@ ContactState RandomState(int number)
   return s;
 }
 
-/* Number of hats whose contact or merging differs between the last solve and the centre's; bonded tissue has none. */
+/* Number of hats whose contact or merging differs between the last solve and the centre's; only the exact law has any.
+ */
 static int ContactChanges(LamRVE rve, const PetscBool active[], const LamContactFace faces[])
 {
   const LamContact *contact = rve->contact;
   int changes = 0;
 
-  if (!contact) return 0;
+  if (!LamIsExact(rve)) return 0;
   for (PetscInt h = 0; h < contact->count; h++) changes += contact->active[h] != active[h];
   for (PetscInt f = 0; f < contact->face_count; f++)
     changes += contact->faces[f].first != faces[f].first || contact->faces[f].last != faces[f].last;
@@ -89,7 +90,9 @@ static PetscErrorCode ContactSweepColumn(ContactCentre *at, int column, double s
       load.F[contact_components[column]] += step[k] * size;
     PetscCall(LamRVEStateCopy(at->centre, at->state));
     PetscCall(LamRVESolve(at->rve, &load, at->state, &moved));
-    sweep->switches += moved.status != LAM_CONVERGED || ContactChanges(at->rve, at->active, at->faces) > 0;
+    sweep->switches += moved.status != LAM_CONVERGED ||
+                       (at->rve->contact && moved.contact_width != sweep->response.contact_width) ||
+                       ContactChanges(at->rve, at->active, at->faces) > 0;
     sweep->energy[column] += w * moved.energy;
     sweep->by_turgor[column] += w * moved.energy_turgor;
     sweep->by_cohesion[column] += w * moved.energy_cohesion;

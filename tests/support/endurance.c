@@ -194,8 +194,9 @@ static LamLoad FailingLoad(EnduranceFailure failure, PetscInt k)
   if (failure == FAILURE_INSIDE_OUT) load.F[0] = -1;
   if (failure == FAILURE_ANTIPLANE) load.F[2] = 0.1;
   if (failure == FAILURE_COHESION) load.cohesion = -1;
-  if (failure == FAILURE_COLLAPSE || failure == FAILURE_COLLAPSE_CONTACT) load = PlaneLoad(0.4, 0, 0, 1, 0);
-  if (failure == FAILURE_OVERLAP) load = PlaneLoad(1, 2, 0, 1, 0.2);
+  if (failure == FAILURE_COLLAPSE) load = PlaneLoad(0.4, 0, 0, 1, 0);
+  if (failure == FAILURE_COLLAPSE_CONTACT) load = PlaneLoad(0.2, 0, 0, 1, 0); /* less room than the walls take */
+  if (failure == FAILURE_OVERLAP) load = PlaneLoad(0.2, 2, 0, 1, 0.2);
   if (failure == FAILURE_NO_EQUILIBRIUM || failure == FAILURE_UNSTABLE) load = PlaneLoad(1, 0, 0, 1, 0);
   return load;
 }

@@ -99,7 +99,7 @@ TEST(what_is_left_out_has_its_default)
   AssertNear(scene->micro.wall.bulk_modulus, 1000.0);
   assert_int_equal(scene->micro.wall.fibres, LAM_FIBRES_BOTH);
   assert_int_equal(scene->micro.interface, LAM_INTERFACE_BONDED);
-  assert_int_equal(scene->strategy, LAM_TWO_STEP);
+  assert_int_equal(scene->strategy, LAM_ONE_STEP);
   AssertNear(scene->turgor, 0.0);
   AssertNear(scene->cohesion, 0.0);
   AssertNear(scene->accuracy, 0.01);

@@ -1,12 +1,15 @@
 /* Everything a response holds is a derivative of its energy: finite differences of bonded tissue at random states
-   (F33 != 1 among them), of contact inside one contact set, of patches, and of cells that differ. */
+   (F33 != 1 among them), of contact inside one contact set, of patches, of cells that differ, and of the smooth law. */
 #include "support/rve_fixture.h"
 #include "support/uneven_cells.h"
 
-enum { BONDED, CONTACT, PATCH, UNEVEN, KINDS };
-static const int counts[KINDS] = {RANDOM_STATES, CONTACT_STATES, PATCH_STATES, UNEVEN_STATES};
+#define SMOOTH_STATES 6
+#define SMOOTH_STEP 2e-6 /* far below the width: the tangent has kinks where points come into reach */
+
+enum { BONDED, CONTACT, PATCH, UNEVEN, SMOOTH, KINDS };
+static const int counts[KINDS] = {RANDOM_STATES, CONTACT_STATES, PATCH_STATES, UNEVEN_STATES, SMOOTH_STATES};
 /* Of tangent, couplings and volumes; of the differences' symmetry. */
-static const double second[KINDS] = {1e-7, 1e-7, 1e-6, 1e-6}, symmetry[KINDS] = {1e-6, 1e-8, 1e-6, 1e-6};
+static const double second[KINDS] = {1e-7, 1e-7, 1e-6, 1e-6, 1e-8}, symmetry[KINDS] = {1e-6, 1e-8, 1e-6, 1e-6, 1e-8};
 
 typedef struct {
   int kind;
@@ -14,7 +17,7 @@ typedef struct {
   ContactDerivativeError error;
 } State;
 
-enum { STATES = RANDOM_STATES + CONTACT_STATES + PATCH_STATES + UNEVEN_STATES };
+enum { STATES = RANDOM_STATES + CONTACT_STATES + PATCH_STATES + UNEVEN_STATES + SMOOTH_STATES };
 static State states[STATES];
 #define FOR_STATES(s) for (const State *s = states; s < states + STATES; s++)
 
@@ -32,6 +35,24 @@ static void ListBonded(ContactState list[RANDOM_STATES])
   list[RANDOM_STATES - 2].micro.cells[0] = 2;
 }
 
+/* Open faces, F33 != 1, a clearance, walls that do not face each other, cells that differ, a patch with free sides. */
+static void ListSmooth(ContactState list[KINDS][CONTACT_STATES])
+{
+  ContactState *smooth = list[SMOOTH];
+
+  smooth[0] = list[CONTACT][2];
+  smooth[1] = list[CONTACT][3];
+  smooth[2] = list[CONTACT][5];
+  smooth[3] = list[CONTACT][0];
+  smooth[3].load = ContactLoad(1, 1.2, 0, 1, 0.02, 0.002);
+  smooth[4] = list[UNEVEN][1];
+  smooth[5] = list[PATCH][4];
+  for (int k = 0; k < SMOOTH_STATES; k++) {
+    smooth[k].micro.sharpness = LAM_SHARPNESS_SMOOTH;
+    smooth[k].step = SMOOTH_STEP;
+  }
+}
+
 static int SweepAll(void **state)
 {
   static LamCell cells[UNEVEN_CELLS];
@@ -42,6 +63,7 @@ static int SweepAll(void **state)
   ListContactStates(list[CONTACT]);
   ListPatchStates(list[PATCH]);
   ListUnevenStates(cells, list[UNEVEN]);
+  ListSmooth(list);
   for (int kind = 0; kind < KINDS; kind++)
     for (int k = 0; k < counts[kind]; k++, s++) {
       s->kind = kind;
@@ -49,6 +71,22 @@ static int SweepAll(void **state)
       s->error = DerivativeError(&s->sweep);
     }
   return 0;
+}
+
+TEST(StatesAreOfTheLawTheyTest)
+{
+  FOR_STATES(s)
+  {
+    if (s->kind != BONDED) assert_true((s->sweep.response.contact_width > 0.0) == (s->kind == SMOOTH));
+  }
+}
+
+TEST(WallsThatDoNotFaceEachOtherBearForces)
+{
+  double largest = 0.0;
+
+  FOR_STATES(s) if (s->kind == SMOOTH) largest = fmax(largest, s->sweep.response.third_fraction);
+  assert_true(largest > 0.5);
 }
 
 TEST(StatesConvergeInsideOneContactSet)
@@ -75,11 +113,12 @@ TEST(DerivativesInTurgorAndCohesionAreThoseOfTheEnergy)
 }
 
 /* Where cells differ dPsi/dp weighs lumens with the turgor factors of their cells, dPsi/dg gaps: neither is a volume.
- */
+   The strength of the smooth law depends on both. */
 TEST(LumenAndOpeningAreThemWhereCellsAreAlike)
 {
   FOR_STATES(s)
   {
+    if (s->kind == SMOOTH) continue;
     if (s->kind != UNEVEN) {
       assert_near(s->error.lumen, 0.0, 1e-8);
       assert_near(s->error.opening, 0.0, 1e-8);
@@ -126,14 +165,15 @@ TEST(SecondDerivativesInTurgorAndCohesionAreThoseOfVolumes)
   FOR_STATES(s) assert_near(s->error.volumes, 0.0, second[s->kind]);
 }
 
-/* The moments of the forces on the held walls, x = F X, balance: P F^T is symmetric. */
+/* The moments of the forces on the held walls, x = F X, balance: P F^T is symmetric. So do those of points that touch.
+ */
 TEST(MomentsOfTheBoundaryForcesBalance)
 {
   FOR_STATES(s)
   {
     const double *P = s->sweep.response.P, *F = s->sweep.response.load.F;
 
-    if (s->kind == PATCH) assert_near(P[0] * F[3] + P[1] * F[4], P[3] * F[0] + P[4] * F[1], 1e-9);
+    if (s->kind == PATCH || s->kind == SMOOTH) assert_near(P[0] * F[3] + P[1] * F[4], P[3] * F[0] + P[4] * F[1], 1e-9);
   }
 }
 

@@ -72,7 +72,7 @@ static void AddForcesOnCells(LamRVE rve, const LamLoad *load, double sums[UNEVEN
   double *force;
 
   assert_int_equal(PetscCalloc1(rve->ndof, &force), 0);
-  assert_int_equal(LamContactEvaluate(rve, load, rve->y, PETSC_FALSE), 0);
+  assert_int_equal(LamContactEvaluate(rve, load, rve->y), 0);
   LamContactAddForce(rve, force);
   LamGapAreaAddGradient(&rve->contact->gaps, load->F, rve->y, load->cohesion * load->F[8], force);
   for (PetscInt i = 0; i < rve->mesh.node_count; i++) {

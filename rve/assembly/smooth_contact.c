@@ -1,0 +1,335 @@
+/*
+  The smooth contact potential: sums over pairs of spans, couplings of the matrix, and what the two laws share.
+
+  Method. Walls that face each other are coupled in the matrix from the start. If other walls meet, or facing ones slide
+  further, the pattern grows by the pairs of nodes met, with a margin; each solve starts again from the first pattern,
+  so that its result depends on load and state alone.
+*/
+#include "rve_impl.h"
+
+#define SLIDING 6 /* nodes by which facing walls may slide before the pattern grows */
+#define MARGIN 2  /* nodes around walls that meet */
+
+/* ---- the sums ---- */
+
+typedef struct {
+  LamRVE rve;
+  const LamLoad *load;
+  LamTouchWanted wanted;
+  LamTouchBlock block;
+  PetscBool open; /* block holds a sum that has not been passed on */
+  LamTouchBlockVisitor visitor;
+  void *ctx;
+} Sum;
+
+LamTouchStrength LamTouchStrengthOf(LamRVE rve, const LamLoad *load, PetscInt a, PetscInt b)
+{
+  const PetscReal p = 0.5 * (LamTurgorFactor(rve, a) + LamTurgorFactor(rve, b));
+  const PetscReal g = LamFaceCohesion(&rve->micro, a, b), press = p * load->turgor + g * load->cohesion;
+  const PetscReal s = PetscSqrtReal(press * press + LAM_LEAST_STRENGTH * LAM_LEAST_STRENGTH);
+  const PetscReal second = LAM_LEAST_STRENGTH * LAM_LEAST_STRENGTH / (s * s * s);
+
+  return (LamTouchStrength){
+      .s = s, .p = p * press / s, .g = g * press / s, .pp = p * p * second, .pg = p * g * second, .gg = g * g * second};
+}
+
+static void OpenBlock(Sum *sum, const LamTouching *touch)
+{
+  const LamRVE rve = sum->rve;
+  const LamWalls *walls = &rve->smooth->walls;
+  LamTouchBlock *block = &sum->block;
+
+  block->loop = touch->loop;
+  block->span = touch->span;
+  block->other = touch->other;
+  block->at = touch->at;
+  block->lumen = LamTouchIsLumen(touch);
+  block->strength = LamTouchStrengthOf(rve, sum->load, touch->loop / 2, touch->other / 2);
+  block->energy = block->energy_width = 0.0;
+  sum->open = PETSC_TRUE;
+  if (sum->wanted == LAM_TOUCH_ENERGY) return;
+  block->facing = LamTouchIsFacing(walls, touch);
+  (void)PetscArrayzero(block->f, LAM_TOUCH_DOFS);
+  (void)PetscArrayzero(block->f_width, LAM_TOUCH_DOFS);
+  (void)PetscMemzero(block->K, sizeof(block->K));
+  for (PetscInt k = 0; k < 2 * LAM_SPAN; ++k) {
+    const PetscBool own = (PetscBool)(k < LAM_SPAN);
+    const PetscInt node =
+        LamWallsControl(walls, own ? touch->loop : touch->other, own ? touch->span : touch->at, k % LAM_SPAN);
+
+    block->class[k] = rve->mesh.node_class[node];
+    for (PetscInt d = 0; d < 2; ++d) block->shift[k][d] = rve->mesh.shift[2 * node + d] + (own ? 0.0 : touch->shift[d]);
+  }
+}
+
+static void CloseBlock(Sum *sum)
+{
+  if (sum->open) sum->visitor(sum->ctx, &sum->block);
+  sum->open = PETSC_FALSE;
+}
+
+static void AddTouch(void *ctx, const LamTouching *touch)
+{
+  Sum *sum = (Sum *)ctx;
+  LamTouchBlock *block = &sum->block;
+  const PetscReal *N = sum->rve->smooth->walls.at[touch->point].N, half = 0.5 * touch->weight;
+  LamTouchLaw law;
+
+  if (sum->open && (block->loop != touch->loop || block->span != touch->span || block->other != touch->other ||
+                    block->at != touch->at))
+    CloseBlock(sum);
+  if (!sum->open) OpenBlock(sum, touch);
+  LamTouchLawEvaluate(touch->gap.gap, sum->rve->smooth->width, &law);
+  block->energy += half * law.phi;
+  if (sum->wanted == LAM_TOUCH_ENERGY) return;
+  LamTouchAddVariation(&touch->gap, N, half * law.d, half * law.dd, block->f,
+                       sum->wanted == LAM_TOUCH_FORCE ? NULL : block->K);
+  if (sum->wanted != LAM_TOUCH_WIDTH) return;
+  block->energy_width += half * law.phi_width;
+  LamTouchAddVariation(&touch->gap, N, half * law.d_width, 0.0, block->f_width, NULL);
+}
+
+void LamSmoothVisit(LamRVE rve, const LamLoad *load, const PetscReal y[], LamTouchWanted wanted,
+                    LamTouchBlockVisitor visitor, void *ctx)
+{
+  Sum sum = {.rve = rve, .load = load, .wanted = wanted, .visitor = visitor, .ctx = ctx};
+
+  LamWallsPlace(&rve->smooth->walls, load->F, y);
+  LamWallsVisit(&rve->smooth->walls, rve->smooth->width, AddTouch, &sum);
+  CloseBlock(&sum);
+}
+
+static void AddEnergy(void *ctx, const LamTouchBlock *block)
+{
+  *(PetscReal *)ctx += block->strength.s * block->energy;
+}
+
+PetscReal LamSmoothEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
+{
+  PetscReal energy = 0.0;
+
+  LamSmoothVisit(rve, load, y, LAM_TOUCH_ENERGY, AddEnergy, &energy);
+  return load->F[8] * energy;
+}
+
+/* ---- the matrix ---- */
+
+static PetscErrorCode Couple(LamSmooth *smooth, PetscInt a, PetscInt b)
+{
+  PetscFunctionBeginUser;
+  if (smooth->count == smooth->room) {
+    const PetscInt room = PetscMax(1024, 2 * smooth->room);
+    PetscInt(*more)[2];
+
+    PetscCall(PetscMalloc1(room, &more));
+    PetscCall(PetscArraycpy(more, smooth->pairs, smooth->count));
+    PetscCall(PetscFree(smooth->pairs));
+    smooth->pairs = more;
+    smooth->room = room;
+  }
+  smooth->pairs[smooth->count][0] = a;
+  smooth->pairs[smooth->count++][1] = b;
+  PetscFunctionReturn(0);
+}
+
+/* Couples node i of one loop with the nodes of another one from j - reach to j + reach. */
+static PetscErrorCode AddNear(LamRVE rve, PetscInt loop, PetscInt i, PetscInt other, PetscInt j, PetscInt reach)
+{
+  LamSmooth *smooth = rve->smooth;
+  const PetscInt n = smooth->walls.nodes, *node = smooth->walls.node, *class = rve->mesh.node_class;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = j - reach; k <= j + reach; ++k)
+    PetscCall(Couple(smooth, class[node[loop * n + (i + n) % n]], class[node[other * n + (k + n) % n]]));
+  PetscFunctionReturn(0);
+}
+
+/* Couplings along each wall (its contour is wider than its elements) and of facing walls. */
+static PetscErrorCode AddFacing(LamRVE rve)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt per_face = 2 * mesh->along;
+
+  PetscFunctionBeginUser;
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
+    for (PetscInt i = 0; i < mesh->ring_nodes; ++i) PetscCall(AddNear(rve, 2 * cell, i, 2 * cell, i, LAM_SPAN - 1));
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
+    for (PetscInt face = 0; face < 3; ++face) {
+      const PetscReal *image;
+      const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
+
+      for (PetscInt i = -1; other >= 0 && i <= per_face + 1; ++i)
+        PetscCall(AddNear(rve, 2 * cell, per_face * face + i, 2 * other, per_face * (face + 4) - i, SLIDING));
+    }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateSystem(LamRVE rve, LamLinear *linear)
+{
+  const LamCouplings couplings = {.pair_count = rve->smooth->count, .pairs = (const PetscInt(*)[2])rve->smooth->pairs};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearCreate(&rve->mesh, &couplings, rve->seal.allowed ? rve->mesh.cell_count : 0, linear));
+  PetscFunctionReturn(0);
+}
+
+/* Makes a system the one in use. */
+static void Use(LamRVE rve, PetscInt system)
+{
+  rve->linear = &rve->systems[system];
+  LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
+  LamForgetFactor(rve);
+}
+
+PetscErrorCode LamSmoothCreate(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&rve->smooth));
+  PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
+  PetscCall(AddFacing(rve));
+  rve->smooth->base_count = rve->smooth->count;
+  PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));
+  rve->smooth->width = LAM_USUAL_WIDTH;
+  Use(rve, LAM_SYSTEM_BASE);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSmoothDestroy(LamSmooth **smooth)
+{
+  PetscFunctionBeginUser;
+  if (!*smooth) PetscFunctionReturn(0);
+  PetscCall(LamWallsDestroy(&(*smooth)->walls));
+  PetscCall(PetscFree((*smooth)->pairs));
+  PetscCall(PetscFree(*smooth));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamUseSmoothLaw(LamRVE rve, PetscReal width)
+{
+  PetscFunctionBeginUser;
+  rve->contact->exact = PETSC_FALSE;
+  rve->smooth->width = width;
+  Use(rve, rve->systems[LAM_SYSTEM_GROWN].factor ? LAM_SYSTEM_GROWN : LAM_SYSTEM_BASE);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamUseExactLaw(LamRVE rve)
+{
+  LamLinear *linear = &rve->systems[LAM_SYSTEM_EXACT];
+  const LamContact *contact = rve->contact;
+
+  PetscFunctionBeginUser;
+  if (!linear->factor) {
+    const LamCouplings couplings = {.count = contact->face_count,
+                                    .size = contact->chain,
+                                    .multipliers = contact->hats,
+                                    .classes = contact->classes};
+
+    PetscCall(LamLinearCreate(&rve->mesh, &couplings, rve->seal.allowed ? rve->mesh.cell_count : 0, linear));
+    PetscCall(LamContactSetMatrix(linear, rve->contact));
+    PetscCall(LamLinearCreateMatrix(rve->comm, linear));
+  }
+  rve->contact->exact = PETSC_TRUE;
+  Use(rve, LAM_SYSTEM_EXACT);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSmoothReset(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearDestroy(&rve->systems[LAM_SYSTEM_GROWN]));
+  rve->smooth->count = rve->smooth->base_count;
+  PetscCall(LamUseSmoothLaw(rve, LAM_USUAL_WIDTH));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Grow(LamRVE rve)
+{
+  LamLinear *grown = &rve->systems[LAM_SYSTEM_GROWN];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamLinearDestroy(grown));
+  PetscCall(CreateSystem(rve, grown));
+  PetscCall(LamLinearCreateMatrix(rve->comm, grown));
+  Use(rve, LAM_SYSTEM_GROWN);
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  LamRVE rve;
+  PetscReal F33, energy, *residual;
+  PetscBool missing; /* a pair of the last blocks is not in the pattern */
+  PetscErrorCode error;
+} Assembly;
+
+/* Adds the 2 x 2 entries of nodes i and j of a block to the values. *missing: they are not in the pattern. */
+static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt i, PetscInt j, PetscReal factor,
+                        PetscBool *missing)
+{
+  const PetscInt a = block->class[i], b = block->class[j];
+  const PetscInt low = PetscMin(a, b), high = PetscMax(a, b);
+  const PetscBool swap = (PetscBool)(a > b);
+  PetscInt first, second;
+
+  if (low == 0) return;
+  first = LamLinearEntry(linear, LamUnknown(low, 0), LamUnknown(high, 0));
+  if (!LamLinearHas(linear, first, LamUnknown(low, 0), LamUnknown(high, 0))) {
+    *missing = PETSC_TRUE;
+    return;
+  }
+  /* both rows of a class have the same columns but for the diagonal */
+  second = linear->row[LamUnknown(low, 1)] + (first - linear->row[LamUnknown(low, 0)]) - 1;
+  for (PetscInt d = 0; d < 2; ++d)
+    for (PetscInt e = a == b ? d : 0; e < 2; ++e) {
+      PetscReal value = swap ? block->K[2 * j + d][2 * i + e] : block->K[2 * i + d][2 * j + e];
+
+      if (a == b && i != j) value += block->K[2 * j + d][2 * i + e];
+      linear->values[d == 0 ? first + e : second + e] += factor * value;
+    }
+}
+
+static PetscErrorCode Record(LamRVE rve, const LamTouchBlock *block)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = -1; i < LAM_SPAN - 1; ++i)
+    PetscCall(AddNear(rve, block->loop, block->span + i, block->other, block->at + 1, MARGIN + 1));
+  for (PetscInt i = -1; i < LAM_SPAN - 1; ++i) {
+    PetscCall(AddNear(rve, block->loop, block->span + i, block->loop, block->span + i, LAM_SPAN - 1));
+    PetscCall(AddNear(rve, block->other, block->at + i, block->other, block->at + i, LAM_SPAN - 1));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void AddBlock(void *ctx, const LamTouchBlock *block)
+{
+  Assembly *a = (Assembly *)ctx;
+  const PetscReal factor = a->F33 * block->strength.s;
+  PetscBool missing = PETSC_FALSE;
+
+  a->energy += factor * block->energy;
+  for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += factor * block->f[i];
+  for (PetscInt i = 0; i < 2 * LAM_SPAN && !missing; ++i)
+    for (PetscInt j = i; j < 2 * LAM_SPAN && !missing; ++j) ScatterPair(a->rve->linear, block, i, j, factor, &missing);
+  if (!missing) return;
+  a->missing = PETSC_TRUE;
+  if (!a->error) a->error = Record(a->rve, block);
+}
+
+PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
+                                 PetscReal residual[])
+{
+  Assembly a = {.rve = rve, .F33 = load->F[8], .residual = residual};
+
+  PetscFunctionBeginUser;
+  do {
+    PetscCall(PetscArrayzero(residual, rve->length));
+    PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
+    a.energy = 0.0;
+    a.missing = PETSC_FALSE;
+    LamSmoothVisit(rve, load, y, LAM_TOUCH_TANGENT, AddBlock, &a);
+    PetscCall(a.error);
+    if (a.missing) PetscCall(Grow(rve));
+  } while (a.missing);
+  *energy += a.energy;
+  PetscFunctionReturn(0);
+}

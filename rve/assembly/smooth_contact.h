@@ -1,0 +1,53 @@
+/*
+  Contact of all walls by one smooth potential (docs/theory/contact.md, The smooth law).
+
+    F33 1/2 sum_q w_q s phi(gap_q; width)
+
+  over all points of walls near another wall (touching.h), phi the law of smooth.h. The strength s is the pressure that
+  holds walls together, so that walls pressed by turgor and suction lie at a gap of zero:
+    s^2 = (p + g)^2 + LAM_LEAST_STRENGTH^2,    p the mean turgor of the two cells, g their cohesion.
+*/
+#ifndef LAM_RVE_SMOOTH_CONTACT_H
+#define LAM_RVE_SMOOTH_CONTACT_H
+
+#include "touching.h"
+
+#define LAM_LEAST_STRENGTH 0.02 /* C1 + C2: of dry, loose tissue; a smaller one needs deeper penetrations */
+
+/* s of two cells and its derivatives with respect to turgor and cohesion of the load. */
+typedef struct {
+  PetscReal s, p, g, pp, pg, gg;
+} LamTouchStrength;
+
+/* Sums over the points of one span against one other span, per strength and per F33. Nodes: the four of the point's
+   span, then the four of the other one in its image. */
+typedef struct {
+  PetscInt class[2 * LAM_SPAN];
+  PetscReal shift[2 * LAM_SPAN][2]; /* x = y_class + F shift */
+  LamTouchStrength strength;
+  PetscReal energy, energy_width; /* and its derivative with respect to the width */
+  PetscReal f[LAM_TOUCH_DOFS], f_width[LAM_TOUCH_DOFS];
+  PetscReal K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS];
+  PetscBool facing, lumen; /* the walls face each other in the undeformed tissue; they belong to a lumen */
+  PetscInt loop, span, other, at;
+} LamTouchBlock;
+
+typedef enum {
+  LAM_TOUCH_ENERGY,
+  LAM_TOUCH_FORCE,
+  LAM_TOUCH_TANGENT,
+  LAM_TOUCH_WIDTH
+} LamTouchWanted; /* and all before */
+typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
+
+#define LAM_USUAL_WIDTH 3e-3 /* apothems: of single states */
+
+typedef struct {
+  LamWalls walls;
+  PetscReal width;      /* apothems */
+  PetscInt base_count;  /* couplings of facing walls that have hardly slid, ... */
+  PetscInt count, room; /* ... and all at present, those of walls met since included */
+  PetscInt (*pairs)[2]; /* [count] classes */
+} LamSmooth;
+
+#endif
