@@ -141,6 +141,23 @@ static int ExitStatus(const LamRVERun *run)
   return run->failure.mode == LAM_FAILURE_UNKNOWN ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
 }
 
+/* Whether states can be looked for from other starts, if that is asked for; otherwise sets the exit status. */
+static PetscBool GlobalFits(const Command *command, int *exit_status)
+{
+  const LamRVERun *run = &command->run;
+
+  if (!run->global) return PETSC_TRUE;
+  if (run->scene->micro.interface != LAM_INTERFACE_CONTACT)
+    return LamUsageError("rve", exit_status, "--global: %s is bonded; leave it out, or write law: contact",
+                         command->scene_path);
+  if (run->second_mesh || run->find_failure)
+    return LamUsageError("rve", exit_status, "--global does not go with a second mesh; ask for one of the two");
+  if (run->scene->controls)
+    return LamUsageError("rve", exit_status, "--global: %s prescribes stress; leave it out, or prescribe all of F",
+                         command->scene_path);
+  return PETSC_TRUE;
+}
+
 static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
 {
   LamRVERun *run = &command->run;
@@ -154,6 +171,10 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
   run->walls = console->json;
   console->has_rows = (PetscBool)(run->monitor || !console->json);
   PetscCall(LamSceneRead(command->scene_path, &run->scene));
+  if (!GlobalFits(command, exit_status)) {
+    PetscCall(LamRVERunDestroy(run));
+    PetscFunctionReturn(0);
+  }
   if (!run->second_mesh || run->scene->micro.interface == LAM_INTERFACE_CONTACT ||
       LamUsageError("rve", exit_status,
                     "%s: the cells of %s are bonded and never separate; leave it out, or write law: contact",
@@ -187,6 +208,8 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {0, "failure", LAM_OPTION_FLAG, NULL,
        "what walls and lamella bear, and how the tissue fails first along the load (contact: includes --second-mesh)",
        &run->find_failure},
+      {0, "global", LAM_OPTION_FLAG, NULL,
+       "contact: start each state from the undeformed tissue, too, and take that of lowest energy", &run->global},
       {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run->no_estimate},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run->monitor},
@@ -195,11 +218,12 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args,
-                            "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] "
-                            "[--no-estimate] [--monitor]\n           [--quiet]",
-                            "Solves the representative volume element along the scene's load.", options, 1,
-                            &command.scene_path, &done, exit_status));
+  PetscCall(
+      LamOptionsParse(args,
+                      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--global] "
+                      "[--no-estimate]\n           [--monitor] [--quiet]",
+                      "Solves the representative volume element along the scene's load.", options, 1,
+                      &command.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (run->find_onset) run->second_mesh = PETSC_TRUE;
   PetscCall(args->start(args));

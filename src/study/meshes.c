@@ -130,3 +130,43 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   first->open_spread = fabs(first->open_fraction - second->open_fraction);
   PetscFunctionReturn(0);
 }
+
+#define SAME_ENERGY 1e-9 /* C1 + C2: of equal states */
+
+/* Whether a state from another start is to replace one: that has failed, or the other has less energy by the same law.
+ */
+static PetscBool IsBetter(const LamResponse *other, const LamResponse *than)
+{
+  if (other->status != LAM_CONVERGED) return PETSC_FALSE;
+  if (than->status != LAM_CONVERGED) return PETSC_TRUE;
+  return (PetscBool)(other->contact_width == than->contact_width && other->energy < than->energy - SAME_ENERGY);
+}
+
+PetscErrorCode LamMeshesSearch(LamMeshes *meshes, LamStrategy strategy, LamResponse *response)
+{
+  const LamRVE rve = meshes->rve[0];
+  LamRVEState state;
+
+  PetscFunctionBeginUser;
+  if (response->status == LAM_OUT_OF_REACH || response->status == LAM_INVALID_F) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateCreate(rve, &state));
+  for (int k = 0; k < LAM_STRATEGY_COUNT; k++) {
+    const LamResponse before = *response;
+    LamResponse other;
+
+    PetscCall(LamRVESetStrategy(rve, (LamStrategy)k));
+    PetscCall(LamRVEStateReset(rve, state));
+    PetscCall(LamRVESolve(rve, &before.load, state, &other));
+    if (other.status == LAM_OUT_OF_REACH) meshes->stopped = PETSC_TRUE;
+    if (IsBetter(&other, &before)) {
+      PetscCall(LamRVEStateCopy(state, meshes->state[0]));
+      *response = other;
+    }
+    response->newton_iterations = before.newton_iterations + other.newton_iterations;
+    response->factorisations = before.factorisations + other.factorisations;
+    response->seconds = before.seconds + other.seconds;
+  }
+  PetscCall(LamRVESetStrategy(rve, strategy));
+  PetscCall(LamRVEStateDestroy(&state));
+  PetscFunctionReturn(0);
+}

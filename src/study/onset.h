@@ -37,6 +37,9 @@ PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const Lam
 */
 PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamStressControl *control,
                               LamResponse responses[2]);
+/* Of contact tissue on one mesh: solves the load of the response again, from the undeformed tissue by both strategies.
+   State and response become those of lowest energy; states of different laws of contact are not compared. */
+PetscErrorCode LamMeshesSearch(LamMeshes *meshes, LamStrategy strategy, LamResponse *response);
 
 #define LAM_ONSET_STATUSES(X)                                                                                          \
   X(LAM_ONSET_NOT_MET, "not_met")               /* every state converged and none is separated */                      \

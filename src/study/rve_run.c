@@ -106,6 +106,8 @@ static PetscErrorCode SolveStates(LamRVERun *run)
 
     PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
                              responses));
+    if (run->global)
+      PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
     if (run->meshes.stopped) break;
     if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
     run->solved++;

@@ -20,6 +20,7 @@ typedef struct LamRVERun_s {
   PetscBool derivatives, walls;       /* wanted of each state, in addition to what the file and the studies need */
   PetscBool find_onset, find_failure; /* of contact tissue on two meshes */
   PetscBool second_mesh;              /* of contact tissue */
+  PetscBool global;                   /* contact tissue, one mesh, prescribed F: from other starts, too */
   PetscBool no_estimate, monitor;     /* no estimate of the error; each Newton iteration on stderr */
   LamReporter reporter;
   /* Called after each state, number `solved`; ctx: that of the reporter. */

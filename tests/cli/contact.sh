@@ -42,6 +42,15 @@ number contact_width | awk '($1 - 0.5 / 75)^2 > 1e-16 { exit 1 }' || fail "not t
 sed 's/law: contact, cohesion: 0.001 MPa/law: bonded, sharpness: smooth/' "$source/tests/scenes/shear-contact.yaml" >bonded.yaml
 expect 2 -e 'bonded.yaml:[0-9]*:.*sharpness.*contradicts law: bonded' "$lamella" check bonded.yaml
 
+# other starts: never a state of higher energy
+sed 's/^load:/&\n  - {F: [[1.02, 0.3], [0, 0.95]], turgor: 0.002 MPa}/' "$source/tests/scenes/shear-contact.yaml" >global.yaml
+expect 0 "$lamella" rve global.yaml --json --no-estimate
+energy=$(number energy | head -1)
+expect 0 "$lamella" rve global.yaml --json --no-estimate --global
+number energy | head -1 | awk -v e="$energy" '!($1 <= e + 1e-12) { exit 1 }' || fail "a higher energy: $(cat out.txt)"
+expect 1 -e 'global.*bonded' "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --global
+expect 1 -e 'global.*second mesh' "$lamella" rve global.yaml --global --second-mesh
+
 # the table has the columns of contact, that of bonded tissue has not
 scene "0.001 MPa" "{F: [[1, 0], [0, 1]]}" "{ramp: {to: [[1, 0.04], [0, 1]], steps: 2}}"
 expect 0 "$lamella" rve scene.yaml
