@@ -51,7 +51,7 @@ static PetscBool IsDeep(LamRVE rve, const LamLoad *load)
 }
 
 /* Whether the state of the exact law in rve->y is acceptable: a minimum, of no higher energy than `most`, in which no
- * walls have passed through each other. */
+   walls have passed through each other. */
 static PetscErrorCode Accept(LamRVE rve, const LamLoad *load, PetscReal most, LamContactOutcome *out)
 {
   PetscReal energy;

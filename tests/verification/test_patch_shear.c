@@ -19,7 +19,7 @@ TEST(BothStrategiesConverge)
 }
 
 /* Where the exact law has no state nearby, under the highest turgor, up to the error that the smooth law tells of
- * either. */
+   either. */
 TEST(BothStrategiesFindTheSameStressUnderTurgor)
 {
   for (int p = 1; p < PATCH_TURGORS; p++)
