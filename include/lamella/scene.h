@@ -43,6 +43,8 @@ LAM_EXPORT extern const char *const LamStrategyNames[];     /* "two_step", "one_
 LAM_EXPORT extern const char *const LamSharpnessNames[];    /* "auto", "exact", "smooth" */
 LAM_EXPORT extern const char *const LamPatchSidesNames[];   /* "affine", "free" */
 
+#define LAM_USUAL_WIDTH 3e-3 /* apothems: of the smooth law of contact for single states (docs/theory/contact.md) */
+
 /* Properties that may vary between cells. */
 typedef struct {
   PetscReal wall_thickness;   /* in apothems */
@@ -64,7 +66,7 @@ typedef struct {
   PetscReal clearance; /* gap between facing walls at rest, in apothems: each cell is smaller than its lattice site by
                           half of it */
   LamSharpness sharpness;  /* law of contact */
-  PetscReal contact_width; /* of the smooth law, in apothems; 0: the usual one */
+  PetscReal contact_width; /* of the smooth law, in apothems; 0: LAM_USUAL_WIDTH */
   PetscInt along, through; /* elements per face and through one wall; 0: chosen by the planner */
   PetscReal grading; /* of the elements along a face towards its ends, in [0, 1); 0: uniform; negative: chosen by the
                         planner */

@@ -8,8 +8,8 @@
   F enters only through the images' shifts F S.
 
   Junction rule. A hat whose centre lies too far outside the overlap is merged into the next inner hat: hat j has the
-  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added to that hat. This status is kept
-  during an iteration.
+  multiplier of hat clamp(j, first, last), and its weight, gap and rows are added to that hat. This status
+  follows the positions in the first iterations of a solve, and is then kept (sharpen.c).
 */
 #ifndef LAM_RVE_CONTACT_H
 #define LAM_RVE_CONTACT_H

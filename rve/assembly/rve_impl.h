@@ -22,6 +22,8 @@
 #include "linear.h"
 #include "smooth_contact.h"
 
+#define LAM_ENERGY_COUNT 8 /* Psi, then its derivatives with respect to F11, F12, F21, F22, F33, p, g */
+
 /* Positions of one material point and the load they equilibrate. */
 struct LamRVEState_s {
   PetscInt n;   /* length of y */
@@ -32,10 +34,10 @@ struct LamRVEState_s {
   PetscInt multipliers;
   PetscReal *lambda; /* [multipliers] */
   PetscInt faces;
-  PetscInt (*hats)[2]; /* [faces] junction status: first and last hat */
-  PetscBool solved;    /* y and lambda are a solution, not the reference state */
-  PetscReal width;     /* of the smooth law that it solves, apothems; 0: the exact law */
-  PetscReal energy[8]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
+  PetscInt (*hats)[2];                /* [faces] junction status: first and last hat */
+  PetscBool solved;                   /* y and lambda are a solution, not the reference state */
+  PetscReal width;                    /* of the smooth law that it solves, apothems; 0: the exact law */
+  PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
 };
 
 typedef struct {
@@ -293,7 +295,8 @@ static inline PetscReal LamBendingStiffness(LamRVE rve)
 }
 
 /* ---- stability.c ---- */
-#define LAM_ZERO_MODE 1e-9 /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2   \
+#define LAM_ZERO_MODE                                                                                                  \
+  1e-9                     /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2   \
                             */
 #define LAM_NEAR_RATE 1e-3 /* largest rate of a factor that is used beyond its own iteration */
 /* Number of negative eigenvalues of the matrix at a stable state: one for each active multiplier and sealed lumen. */

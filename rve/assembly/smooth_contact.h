@@ -40,8 +40,6 @@ typedef enum {
 } LamTouchWanted; /* and all before */
 typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
 
-#define LAM_USUAL_WIDTH 3e-3 /* apothems: of single states */
-
 typedef struct {
   LamWalls walls;
   PetscReal width;      /* apothems */

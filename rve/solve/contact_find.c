@@ -31,11 +31,6 @@ static PetscBool IsWithin(const LamLoad *from, const LamLoad *load, PetscReal re
   return (PetscBool)(largest <= reach);
 }
 
-PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load)
-{
-  return IsWithin(from, load, NEAR);
-}
-
 static const LamLoad *LoadOf(const LamLoad *load, const LamBorder *border)
 {
   return border ? &border->load : load;
@@ -251,7 +246,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
                               LamContactOutcome *out)
 {
   const LamLoad guess = *LoadOf(load, border);
-  const PetscBool near = (PetscBool)(before->solved && LamContactIsNear(&before->load, &guess));
+  const PetscBool near = (PetscBool)(before->solved && IsWithin(&before->load, &guess, NEAR));
   PetscBool ok;
 
   PetscFunctionBeginUser;

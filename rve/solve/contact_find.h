@@ -41,7 +41,5 @@ PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *bord
                                 LamContactOutcome *out);
 /* From that state to the law that is wanted. */
 PetscErrorCode LamContactFinish(LamRVE rve, const LamLoad *load, LamBorder *border, LamContactOutcome *out);
-/* Whether the loads are near enough to start from a solution at `from`. */
-PetscBool LamContactIsNear(const LamLoad *from, const LamLoad *load);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct {
   PetscInt shut;        /* cell whose lumen the failure has turned inside out; -1: none */
   LamKinking kinking;
   PetscBool from_rest;
-  LamLoad end; /* of that failure */
+  LamLoad end; /* of that failure; of the path if there was none */
 } Way;
 
 /* Follows the loads from that of `at` to `load`; on return *at is the last state. */
@@ -29,6 +29,8 @@ static PetscErrorCode Walk(LamRVE rve, LamRVEState at, const LamLoad *load, Way 
   PetscFunctionBeginUser;
   way->between[0] = 0.0;
   way->between[1] = 1.0;
+  way->end = *load;
+  way->shut = -1;
   way->kinking = LAM_NO_KINKING;
   LamWatchKinks(rve, &start, at->y, 0.0, &way->kinking);
   while (way->between[0] < 1.0 && LamMayIterate(rve)) {
@@ -102,9 +104,8 @@ static PetscErrorCode Refuse(LamRVE rve, const Way *way, const LamContactOutcome
     PetscCall(LamRefuseKinks(&way->kinking, way->between[0], status, response));
   } else {
     PetscCall(LamRefuse(response, LAM_NOT_CONVERGED,
-                        "no contact equilibrium found%s, after %d iterations: give states "
-                        "in between",
-                        place, (int)rve->work.iterations));
+                        "no contact equilibrium found%s, after %d iterations: give states in between", place,
+                        (int)rve->work.iterations));
   }
   used = strlen(response->reason);
   if (way->from_rest && way->between[1] > way->between[0])

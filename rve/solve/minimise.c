@@ -1,5 +1,6 @@
 /*
-  The loop that finds states with the smooth law of contact: minimisation of the energy.
+  Minimisation of the energy: the loop that finds states with the smooth law of contact, and bonded ones where the other
+  tiers fail.
 
   Method. Newton's method with independent wall stresses (element.h). If the matrix is not positive definite, it is
   shifted (inertia correction): a shift that fails is multiplied by GROWTH, one that serves is divided by DECAY for the

@@ -4,8 +4,8 @@
   Method. Primal-dual active set, which is a semi-smooth Newton method. The hats with lambda - c gap > 0 are active:
   their linearised weighted gaps are set to zero, and their multipliers are solved for, not incremented. All other
   multipliers are zero. The tangent has independent wall stresses, and a shift if it is not positive definite on the
-  free motions; near a saddle the softest mode is added, downhill. The junction status is that of the initial guess; if
-  the solution disagrees with it, the iteration continues with that of the solution.
+  free motions; near a saddle the softest mode is added, downhill. The junction status follows the positions
+  in the first iterations; if the solution disagrees with it, the iteration continues with that of the solution.
 
     [ K - sum lambda d2G + shift   -B^T ] [ dx         ]   [ -r0 ]      r0: residual without contact forces
     [ -B                            0   ] [ lambda_new ] = [  G  ]

@@ -62,16 +62,15 @@ PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iterat
    steps of an indefinite matrix: near a saddle the residual has almost no component along that mode, and Newton alone
    is slow. iterations: inverse iterations, from `mode` [n]; image [n]: work space. */
 #define LAM_PROXIMAL 1e-7        /* shift of every step of contact tissue: keeps free cells from turning by rounding */
-#define LAM_SADDLE_RESIDUAL 1e-3 /* norm below which small steps of an indefinite contact state mean a saddle nearby   \
-                                  */
+#define LAM_SADDLE_RESIDUAL 1e-3 /* norm below which small steps of an indefinite contact state mean a saddle */
 #define LAM_CREEPING 0.6         /* the same for small steps longer than this share of the previous one */
 #define LAM_ESCAPE_STEP 0.01     /* largest entry of that multiple, in apothems */
 PetscErrorCode LamAddNegativeCurvature(LamRVE rve, PetscInt iterations, const PetscReal residual[], PetscReal mode[],
                                        PetscReal image[]);
 
 /* ---- minimise.c ---- */
-/* Finds a minimum of the energy with the smooth law of contact, from rve->y and the independent stresses, to the
-   tolerance of the residual norm. border: as in LamNewtonFast. */
+/* Finds a minimum of the energy, of contact tissue with the smooth law, from rve->y and the independent stresses, to
+   the tolerance of the residual norm. border: as in LamNewtonFast. */
 PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal tolerance,
                            LamNewtonOutcome *outcome);
 

@@ -103,7 +103,7 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->branch = 0;
   state->solved = PETSC_FALSE;
   state->width = 0.0;
-  for (PetscInt k = 0; k < 8; ++k) state->energy[k] = NAN;
+  for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = NAN;
   PetscFunctionReturn(0);
 }
 

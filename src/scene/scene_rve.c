@@ -126,8 +126,7 @@ PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scal
   PetscFunctionReturn(0);
 }
 
-#define USUAL_WIDTH 0.003 /* apothems, of the smooth law: of single states (docs/theory/contact.md) */
-#define LARGEST_WIDTH 0.1
+#define LARGEST_WIDTH 0.1 /* of the smooth law of contact, apothems */
 
 static PetscErrorCode BuildContactLaw(const LamNode *rve, LamMicrostructure *micro)
 {
@@ -139,7 +138,7 @@ static PetscErrorCode BuildContactLaw(const LamNode *rve, LamMicrostructure *mic
   LamSceneCheckName(!width || smooth, width, "says nothing of the exact law; write sharpness: smooth, or leave it out");
   LamSceneCheck(!width || micro->contact_width <= LARGEST_WIDTH, width,
                 "is more than a tenth of the apothem; write less");
-  if (smooth && !width) micro->contact_width = USUAL_WIDTH;
+  if (smooth && !width) micro->contact_width = LAM_USUAL_WIDTH;
   PetscFunctionReturn(0);
 }
 
