@@ -16,6 +16,7 @@ typedef struct {
   LamRVE rve;
   const LamLoad *load;
   LamTouchWanted wanted;
+  PetscReal f[LAM_TOUCH_DOFS], f_width[LAM_TOUCH_DOFS], K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS]; /* of control points */
   LamTouchBlock block;
   PetscBool open; /* block holds a sum that has not been passed on */
   LamTouchBlockVisitor visitor;
@@ -49,23 +50,54 @@ static void OpenBlock(Sum *sum, const LamTouching *touch)
   sum->open = PETSC_TRUE;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
   block->facing = LamTouchIsFacing(walls, touch);
-  (void)PetscArrayzero(block->f, LAM_TOUCH_DOFS);
-  (void)PetscArrayzero(block->f_width, LAM_TOUCH_DOFS);
-  (void)PetscMemzero(block->K, sizeof(block->K));
-  for (PetscInt k = 0; k < 2 * LAM_SPAN; ++k) {
-    const PetscBool own = (PetscBool)(k < LAM_SPAN);
+  (void)PetscArrayzero(sum->f, LAM_TOUCH_DOFS);
+  (void)PetscArrayzero(sum->f_width, LAM_TOUCH_DOFS);
+  (void)PetscMemzero(sum->K, sizeof(sum->K));
+  for (PetscInt k = 0; k < LAM_BLOCK_NODES; ++k) {
+    const PetscBool own = (PetscBool)(k < LAM_SPAN_NODES);
     const PetscInt node =
-        LamWallsControl(walls, own ? touch->loop : touch->other, own ? touch->span : touch->at, k % LAM_SPAN);
+        LamWallsNode(walls, own ? touch->loop : touch->other, own ? touch->span : touch->at, k % LAM_SPAN_NODES);
 
     block->class[k] = rve->mesh.node_class[node];
     for (PetscInt d = 0; d < 2; ++d) block->shift[k][d] = rve->mesh.shift[2 * node + d] + (own ? 0.0 : touch->shift[d]);
   }
 }
 
+/* Forces on nodes from those on control points. */
+static void PassForces(const PetscReal (*const share[2])[LAM_SPAN_NODES], const PetscReal from[LAM_TOUCH_DOFS],
+                       PetscInt stride, PetscReal to[LAM_BLOCK_DOFS])
+{
+  (void)PetscArrayzero(to, LAM_BLOCK_DOFS);
+  for (PetscInt a = 0; a < 2 * LAM_SPAN; ++a)
+    for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) {
+      const PetscReal s = share[a / LAM_SPAN][a % LAM_SPAN][i];
+      PetscReal *at = &to[2 * (LAM_SPAN_NODES * (a / LAM_SPAN) + i)];
+
+      for (PetscInt d = 0; d < 2; ++d) at[d] += s * from[(2 * a + d) * stride];
+    }
+}
+
 static void CloseBlock(Sum *sum)
 {
-  if (sum->open) sum->visitor(sum->ctx, &sum->block);
+  const LamWalls *walls = &sum->rve->smooth->walls;
+  LamTouchBlock *block = &sum->block;
+  const PetscReal(*const share[2])[LAM_SPAN_NODES] = {walls->of[block->span].share, walls->of[block->at].share};
+  PetscReal half[LAM_BLOCK_DOFS][LAM_TOUCH_DOFS];
+
+  if (!sum->open) return;
   sum->open = PETSC_FALSE;
+  if (sum->wanted != LAM_TOUCH_ENERGY) PassForces(share, sum->f, 1, block->f);
+  if (sum->wanted == LAM_TOUCH_WIDTH) PassForces(share, sum->f_width, 1, block->f_width);
+  if (sum->wanted >= LAM_TOUCH_TANGENT) {
+    for (PetscInt j = 0; j < LAM_TOUCH_DOFS; ++j) {
+      PetscReal column[LAM_BLOCK_DOFS];
+
+      PassForces(share, &sum->K[0][j], LAM_TOUCH_DOFS, column);
+      for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) half[i][j] = column[i];
+    }
+    for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) PassForces(share, half[i], 1, block->K[i]);
+  }
+  sum->visitor(sum->ctx, block);
 }
 
 static void AddTouch(void *ctx, const LamTouching *touch)
@@ -82,11 +114,11 @@ static void AddTouch(void *ctx, const LamTouching *touch)
   LamTouchLawEvaluate(touch->gap.gap, sum->rve->smooth->width, &law);
   block->energy += half * law.phi;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
-  LamTouchAddVariation(&touch->gap, N, half * law.d, half * law.dd, block->f,
-                       sum->wanted == LAM_TOUCH_FORCE ? NULL : block->K);
+  LamTouchAddVariation(&touch->gap, N, half * law.d, half * law.dd, sum->f,
+                       sum->wanted == LAM_TOUCH_FORCE ? NULL : sum->K);
   if (sum->wanted != LAM_TOUCH_WIDTH) return;
   block->energy_width += half * law.phi_width;
-  LamTouchAddVariation(&touch->gap, N, half * law.d_width, 0.0, block->f_width, NULL);
+  LamTouchAddVariation(&touch->gap, N, half * law.d_width, 0.0, sum->f_width, NULL);
 }
 
 void LamSmoothVisit(LamRVE rve, const LamLoad *load, const PetscReal y[], LamTouchWanted wanted,
@@ -148,17 +180,18 @@ static PetscErrorCode AddNear(LamRVE rve, PetscInt loop, PetscInt i, PetscInt ot
 static PetscErrorCode AddFacing(LamRVE rve)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt per_face = 2 * mesh->along;
+  const PetscInt per_face = 2 * mesh->along, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
 
   PetscFunctionBeginUser;
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt i = 0; i < mesh->ring_nodes; ++i) PetscCall(AddNear(rve, 2 * cell, i, 2 * cell, i, LAM_SPAN - 1));
+    for (PetscInt i = 0; i < mesh->ring_nodes; ++i)
+      PetscCall(AddNear(rve, 2 * cell, i, 2 * cell, i, LAM_SPAN_NODES - 1));
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
     for (PetscInt face = 0; face < 3; ++face) {
       const PetscReal *image;
       const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
-      for (PetscInt i = -1; other >= 0 && i <= per_face + 1; ++i)
+      for (PetscInt i = -beyond; other >= 0 && i <= per_face + beyond; ++i)
         PetscCall(AddNear(rve, 2 * cell, per_face * face + i, 2 * other, per_face * (face + 4) - i, SLIDING));
     }
   PetscFunctionReturn(0);
@@ -290,12 +323,14 @@ static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt 
 
 static PetscErrorCode Record(LamRVE rve, const LamTouchBlock *block)
 {
+  const LamSpanNodes *of = rve->smooth->walls.of;
+  const PetscInt here = of[block->span].first, there = of[block->at].first, middle = LAM_SPAN_NODES / 2;
+
   PetscFunctionBeginUser;
-  for (PetscInt i = -1; i < LAM_SPAN - 1; ++i)
-    PetscCall(AddNear(rve, block->loop, block->span + i, block->other, block->at + 1, MARGIN + 1));
-  for (PetscInt i = -1; i < LAM_SPAN - 1; ++i) {
-    PetscCall(AddNear(rve, block->loop, block->span + i, block->loop, block->span + i, LAM_SPAN - 1));
-    PetscCall(AddNear(rve, block->other, block->at + i, block->other, block->at + i, LAM_SPAN - 1));
+  for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) {
+    PetscCall(AddNear(rve, block->loop, here + i, block->other, there + middle, MARGIN + middle));
+    PetscCall(AddNear(rve, block->loop, here + i, block->loop, here + i, LAM_SPAN_NODES - 1));
+    PetscCall(AddNear(rve, block->other, there + i, block->other, there + i, LAM_SPAN_NODES - 1));
   }
   PetscFunctionReturn(0);
 }
@@ -307,9 +342,10 @@ static void AddBlock(void *ctx, const LamTouchBlock *block)
   PetscBool missing = PETSC_FALSE;
 
   a->energy += factor * block->energy;
-  for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += factor * block->f[i];
-  for (PetscInt i = 0; i < 2 * LAM_SPAN && !missing; ++i)
-    for (PetscInt j = i; j < 2 * LAM_SPAN && !missing; ++j) ScatterPair(a->rve->linear, block, i, j, factor, &missing);
+  for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += factor * block->f[i];
+  for (PetscInt i = 0; i < LAM_BLOCK_NODES && !missing; ++i)
+    for (PetscInt j = i; j < LAM_BLOCK_NODES && !missing; ++j)
+      ScatterPair(a->rve->linear, block, i, j, factor, &missing);
   if (!missing) return;
   a->missing = PETSC_TRUE;
   if (!a->error) a->error = Record(a->rve, block);

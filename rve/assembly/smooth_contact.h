@@ -19,15 +19,18 @@ typedef struct {
   PetscReal s, p, g, pp, pg, gg;
 } LamTouchStrength;
 
-/* Sums over the points of one span against one other span, per strength and per F33. Nodes: the four of the point's
-   span, then the four of the other one in its image. */
+#define LAM_BLOCK_NODES (2 * LAM_SPAN_NODES)
+#define LAM_BLOCK_DOFS (2 * LAM_BLOCK_NODES) /* 2 node + component */
+
+/* Sums over the points of one span against one other span, per strength and per F33. Nodes: those of the point's span,
+   then those of the other one in its image. */
 typedef struct {
-  PetscInt class[2 * LAM_SPAN];
-  PetscReal shift[2 * LAM_SPAN][2]; /* x = y_class + F shift */
+  PetscInt class[LAM_BLOCK_NODES];
+  PetscReal shift[LAM_BLOCK_NODES][2]; /* x = y_class + F shift */
   LamTouchStrength strength;
   PetscReal energy, energy_width; /* and its derivative with respect to the width */
-  PetscReal f[LAM_TOUCH_DOFS], f_width[LAM_TOUCH_DOFS];
-  PetscReal K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS];
+  PetscReal f[LAM_BLOCK_DOFS], f_width[LAM_BLOCK_DOFS];
+  PetscReal K[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS];
   PetscBool facing, lumen; /* the walls face each other in the undeformed tissue; they belong to a lumen */
   PetscInt loop, span, other, at;
 } LamTouchBlock;

@@ -19,11 +19,17 @@ typedef struct {
 /* Half-edge of a slave face that a point of its wall belongs to, and the place in it; -1: the wall is no slave. */
 static PetscInt PlaceOf(const Pressures *p, PetscInt loop, PetscInt span, PetscInt point, PetscReal *place)
 {
-  const PetscInt per_face = 2 * p->rve->mesh.along, face = span / per_face;
-  const PetscInt f = loop % 2 || face > 2 ? -1 : p->face_of[3 * (loop / 2) + face];
+  const PetscInt last = 2 * p->rve->mesh.along;
+  PetscInt half, face = LamWallsFace(&p->rve->smooth->walls, span, &half), f;
 
   *place = ((PetscReal)point + 0.5) / LAM_TOUCH_POINTS;
-  return f < 0 ? -1 : f * p->rve->contact->hats + span % per_face;
+  if (half == last) { /* at a corner */
+    half = *place < 0.5 ? last - 1 : 0;
+    if (half == 0) face = (face + 1) % LAM_FACES;
+    *place = half == 0 ? 0.0 : 1.0;
+  }
+  f = loop % 2 || face > 2 ? -1 : p->face_of[3 * (loop / 2) + face];
+  return f < 0 ? -1 : f * p->rve->contact->hats + half;
 }
 
 static void AddPressure(void *ctx, const LamTouching *touch)
@@ -52,10 +58,10 @@ static void AddLengths(Pressures *p)
 {
   const LamWalls *walls = &p->rve->smooth->walls;
 
-  for (PetscInt k = 0; k < walls->loops * walls->nodes; ++k)
+  for (PetscInt k = 0; k < walls->loops * walls->spans; ++k)
     for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
       PetscReal place;
-      const PetscInt hat = PlaceOf(p, k / walls->nodes, k % walls->nodes, q, &place);
+      const PetscInt hat = PlaceOf(p, k / walls->spans, k % walls->spans, q, &place);
 
       if (hat < 0) continue;
       p->length[hat] += (1.0 - place) * walls->weight[LAM_TOUCH_POINTS * k + q];

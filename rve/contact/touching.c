@@ -13,16 +13,43 @@ static void ListNodes(const LamMesh *mesh, LamWalls *walls)
     }
 }
 
+/* Node of a loop at control point i, or nearest to it; both copies of a corner have the same. */
+static PetscInt NodeOfControl(const LamWalls *walls, PetscInt i)
+{
+  PetscInt half, face = LamWallsFace(walls, (i + walls->spans) % walls->spans, &half);
+
+  return (2 * walls->mesh->along * face + half) % walls->nodes;
+}
+
+static void ShareNodes(LamWalls *walls)
+{
+  for (PetscInt span = 0; span < walls->spans; ++span) {
+    LamSpanNodes *of = &walls->of[span];
+    const PetscInt start = NodeOfControl(walls, span);
+
+    *of = (LamSpanNodes){.first = (start - 2 + start % 2 + walls->nodes) % walls->nodes};
+    for (PetscInt a = 0; a < LAM_SPAN; ++a) {
+      const PetscInt node = NodeOfControl(walls, span + a - 1);
+      PetscReal *share = &of->share[a][(node - of->first + walls->nodes) % walls->nodes];
+
+      share[0] = node % 2 ? 4.0 / 3.0 : 1.0;
+      if (node % 2) share[-1] = share[1] = -1.0 / 6.0;
+    }
+  }
+}
+
 /* Reference lengths of the points, from the contour of the reference positions. */
 static void Weigh(const LamMesh *mesh, LamWalls *walls)
 {
-  for (PetscInt k = 0; k < walls->loops * walls->nodes; ++k)
+  for (PetscInt k = 0; k < walls->loops * walls->spans; ++k)
     for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
-      PetscReal c[LAM_SPAN][2], tau[2];
+      const PetscInt span = k % walls->spans;
+      PetscReal c[LAM_SPAN][2] = {{0}}, tau[2];
 
       for (PetscInt a = 0; a < LAM_SPAN; ++a)
-        for (PetscInt d = 0; d < 2; ++d)
-          c[a][d] = mesh->X[2 * LamWallsControl(walls, k / walls->nodes, k % walls->nodes, a) + d];
+        for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i)
+          for (PetscInt d = 0; d < 2; ++d)
+            c[a][d] += walls->of[span].share[a][i] * mesh->X[2 * LamWallsNode(walls, k / walls->spans, span, i) + d];
       LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
       walls->weight[LAM_TOUCH_POINTS * k + q] = PetscSqrtReal(tau[0] * tau[0] + tau[1] * tau[1]) / LAM_TOUCH_POINTS;
     }
@@ -34,17 +61,19 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 
   PetscFunctionBeginUser;
   *walls = (LamWalls){.mesh = mesh, .loops = 2 * mesh->cell_count, .nodes = mesh->ring_nodes};
+  walls->spans = walls->nodes + LAM_FACES;
   walls->is_patch = micro->is_patch;
   walls->apart = PetscMax(3, mesh->along);
-  all = walls->loops * walls->nodes;
-  PetscCall(PetscMalloc4(all, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight, mesh->cell_count, &walls->thickness,
-                         all, &walls->x));
+  all = walls->loops * walls->spans;
+  PetscCall(PetscMalloc5(walls->loops * walls->nodes, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight,
+                         mesh->cell_count, &walls->thickness, all, &walls->x, walls->spans, &walls->of));
   PetscCall(PetscMalloc5(LAM_TOUCH_POINTS * all, &walls->point, all, &walls->knot, all, &walls->tau, walls->loops,
                          &walls->box, all, &walls->hull));
   for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = PetscMin(DEEPEST, LamWallThickness(micro, c));
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineWeightsAt(((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, &walls->at[q]);
   ListNodes(mesh, walls);
+  ShareNodes(walls);
   Weigh(mesh, walls);
   PetscFunctionReturn(0);
 }
@@ -52,7 +81,7 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 PetscErrorCode LamWallsDestroy(LamWalls *walls)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(walls->node, walls->weight, walls->thickness, walls->x));
+  PetscCall(PetscFree5(walls->node, walls->weight, walls->thickness, walls->x, walls->of));
   PetscCall(PetscFree5(walls->point, walls->knot, walls->tau, walls->box, walls->hull));
   PetscFunctionReturn(0);
 }
@@ -73,7 +102,7 @@ static inline PetscBool AreNear(const LamBox *a, const LamBox *b, const PetscRea
 
 static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
 {
-  const PetscInt n = walls->nodes;
+  const PetscInt n = walls->spans;
 
   for (PetscInt a = 0; a < LAM_SPAN; ++a) {
     const PetscInt i = span + a - 1, k = loop * n + (i < 0 ? i + n : i >= n ? i - n : i);
@@ -83,24 +112,41 @@ static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt spa
   }
 }
 
+/* Position of the second control point of a span. */
+static void PlaceControl(const LamWalls *walls, const PetscReal F[9], const PetscReal y[], PetscInt loop, PetscInt span,
+                         PetscReal c[2])
+{
+  const LamMesh *mesh = walls->mesh;
+  const PetscReal *share = walls->of[span].share[1];
+
+  c[0] = c[1] = 0.0;
+  for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) {
+    const PetscInt node = LamWallsNode(walls, loop, span, i);
+    PetscReal x[2];
+
+    if (share[i] == 0.0) continue;
+    LamImagePosition(F, y, mesh->node_class[node], &mesh->shift[2 * node], x);
+    for (PetscInt d = 0; d < 2; ++d) c[d] += share[i] * x[d];
+  }
+}
+
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
 {
   static const LamBox nothing = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
-  const LamMesh *mesh = walls->mesh;
   LamSplineWeights start;
 
   LamSplineWeightsAt(0.0, &start);
   (void)PetscArraycpy(walls->F, F, 9);
   for (PetscInt loop = 0; loop < walls->loops; ++loop) {
     walls->box[loop] = nothing;
-    for (PetscInt i = 0; i < walls->nodes; ++i) {
-      const PetscInt k = loop * walls->nodes + i, node = walls->node[k];
+    for (PetscInt i = 0; i < walls->spans; ++i) {
+      const PetscInt k = loop * walls->spans + i;
 
-      LamImagePosition(F, y, mesh->node_class[node], &mesh->shift[2 * node], walls->x[k]);
+      PlaceControl(walls, F, y, loop, i, walls->x[k]);
       Widen(&walls->box[loop], walls->x[k]);
     }
-    for (PetscInt i = 0; i < walls->nodes; ++i) {
-      const PetscInt k = loop * walls->nodes + i;
+    for (PetscInt i = 0; i < walls->spans; ++i) {
+      const PetscInt k = loop * walls->spans + i;
       PetscReal c[LAM_SPAN][2];
 
       GatherSpan(walls, loop, i, c);
@@ -125,12 +171,12 @@ typedef struct {
   void *ctx;
 } Pair;
 
-/* Distance of two spans of a loop, in nodes. */
-static inline PetscInt Between(PetscInt nodes, PetscInt i, PetscInt j)
+/* Distance of two spans of a loop, in spans. */
+static inline PetscInt Between(PetscInt spans, PetscInt i, PetscInt j)
 {
   const PetscInt d = i > j ? i - j : j - i;
 
-  return PetscMin(d, nodes - d);
+  return PetscMin(d, spans - d);
 }
 
 /* Whether the normals of a point's own wall and of the one that it is near to are opposed. */
@@ -156,7 +202,7 @@ static PetscBool Counts(const Pair *p, PetscInt span, PetscInt q, const LamTouch
 static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->nodes, k = p->other * n + j, next = p->other * n + (j + 1 == n ? 0 : j + 1);
+  const PetscInt n = walls->spans, k = p->other * n + j, next = p->other * n + (j + 1 == n ? 0 : j + 1);
   PetscReal c[LAM_SPAN][2];
   PetscBool gathered = PETSC_FALSE;
   LamTouching touch;
@@ -187,7 +233,7 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 static void VisitLoops(const Pair *p)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->nodes;
+  const PetscInt n = walls->spans;
   static const PetscReal none[2] = {0.0, 0.0};
 
   for (PetscInt i = 0; i < n; ++i) {
@@ -265,11 +311,10 @@ void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visit
 PetscBool LamTouchIsFacing(const LamWalls *walls, const LamTouching *touch)
 {
   const LamMesh *mesh = walls->mesh;
-  const PetscInt per_face = 2 * mesh->along, cell = touch->loop / 2, face = touch->span / per_face;
-  const PetscInt within = touch->span % per_face; /* at a corner, also the face across it */
-  const PetscInt neighbour = within == 0              ? (face + LAM_FACES - 1) % LAM_FACES
-                             : within == per_face - 1 ? (face + 1) % LAM_FACES
-                                                      : face;
+  PetscInt half, face = LamWallsFace(walls, touch->span, &half), cell = touch->loop / 2;
+  const PetscInt neighbour = half == 0                     ? (face + LAM_FACES - 1) % LAM_FACES
+                             : half >= 2 * mesh->along - 1 ? (face + 1) % LAM_FACES
+                                                           : face; /* at a corner, also the face across it */
   const PetscInt faces[2] = {face, neighbour};
 
   if (LamTouchIsLumen(touch)) return PETSC_FALSE;

@@ -2,10 +2,13 @@
   Walls that are near each other: every outer wall against every image of every cell's outer walls, and the walls of a
   lumen against each other.
 
-  Each cell has two contours (smooth.h) whose control points are nodes of the mesh: its outer walls, counter-clockwise,
-  and its lumen, clockwise, so that the outward side of both is outside the wall. Points of a contour are spread evenly,
-  LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each point is held against all contours, and
-  each pair of walls is met from both sides, with half the potential each.
+  Each cell has two contours (smooth.h): its outer walls, counter-clockwise, and its lumen, clockwise, so that the
+  outward side of both is outside the wall. Control points are the nodes at the ends of elements, and at their middle
+    c_m = x_m + (2 x_m - x_e - x_f)/6,    x_e, x_f the ends,
+  so that a uniform pressure on a straight contour loads the nodes as one on the elements does, 1 : 4 : 1. The corners
+  of a cell are control points twice: the contour is straight up to them and rounds them within a sixth of a span.
+  Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
+  point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 */
 #ifndef LAM_RVE_TOUCHING_H
 #define LAM_RVE_TOUCHING_H
@@ -14,24 +17,32 @@
 #include "mesh.h"
 #include "smooth.h"
 
-#define LAM_TOUCH_POINTS 6 /* per span: 3 leave a ripple in the tangent, more change little (docs/theory/contact.md)   \
-                            */
+#define LAM_SPAN_NODES 5 /* nodes, following each other, that the control points of a span depend on */
+#define LAM_TOUCH_POINTS                                                                                               \
+  6 /* per span: 3 leave a ripple in the tangent, more change little (docs/theory/contact.md)                          \
+     */
 
 typedef struct {
   PetscReal low[2], high[2];
 } LamBox;
 
 typedef struct {
+  PetscInt first;                            /* of the nodes of the span */
+  PetscReal share[LAM_SPAN][LAM_SPAN_NODES]; /* control point = sum share node */
+} LamSpanNodes;
+
+typedef struct {
   const LamMesh *mesh;                   /* borrowed */
-  PetscInt loops, nodes;                 /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; nodes of a loop */
+  PetscInt loops, nodes, spans;          /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; of a loop */
+  LamSpanNodes *of;                      /* [span] of any loop */
   PetscBool is_patch;                    /* no images */
-  PetscInt apart;                        /* least distance of points of one loop that may touch, in nodes */
+  PetscInt apart;                        /* least distance of points of one loop that may touch, in spans */
   PetscInt *node;                        /* [loop][node] nodes of the mesh */
   PetscReal *weight;                     /* [loop][span][point] reference length */
   PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
   LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
   /* of the positions last placed */
-  PetscReal (*x)[2];               /* [loop][node] */
+  PetscReal (*x)[2];               /* [loop][span] control points: span k lies between k and k + 1 */
   PetscReal (*point)[2];           /* [loop][span][point] */
   PetscReal (*knot)[2], (*tau)[2]; /* [loop][span] start of the span and tangent there */
   LamBox *box, *hull;              /* [loop], [loop][span] */
@@ -55,10 +66,19 @@ typedef void (*LamTouchVisitor)(void *ctx, const LamTouching *touch);
 /* Calls the visitor for all such points; those of the same two spans follow each other. */
 void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visitor, void *ctx);
 
-/* Mesh node of control point k = 0..3 of a span. */
-static inline PetscInt LamWallsControl(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt k)
+/* Mesh node k = 0..LAM_SPAN_NODES - 1 of a span. */
+static inline PetscInt LamWallsNode(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt k)
 {
-  return walls->node[loop * walls->nodes + (span + k - 1 + walls->nodes) % walls->nodes];
+  return walls->node[loop * walls->nodes + (walls->of[span].first + k) % walls->nodes];
+}
+/* Face of a span of the outer walls, and which of its 2 along halves of edges; at a corner, half 2 along belongs to the
+   next face, too. */
+static inline PetscInt LamWallsFace(const LamWalls *walls, PetscInt span, PetscInt *half)
+{
+  const PetscInt per_face = 2 * walls->mesh->along + 1;
+
+  *half = span % per_face;
+  return span / per_face;
 }
 static inline PetscBool LamTouchIsLumen(const LamTouching *touch)
 {

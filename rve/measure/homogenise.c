@@ -212,7 +212,7 @@ static void AddTouchBlock(void *ctx, const LamTouchBlock *block)
   c->Lqq[Q_TURGOR][Q_TURGOR] += F33 * s->pp * block->energy;
   c->Lqq[Q_TURGOR][Q_COHESION] += F33 * s->pg * block->energy;
   c->Lqq[Q_COHESION][Q_COHESION] += F33 * s->gg * block->energy;
-  for (PetscInt j = 0; j < LAM_TOUCH_DOFS; ++j) {
+  for (PetscInt j = 0; j < LAM_BLOCK_DOFS; ++j) {
     const PetscInt at = 2 * block->class[j / 2] + j % 2;
 
     for (PetscInt k = 0; k < 3; ++k) c->R[q3[k] * c->size + at] += factor[k] * block->f[j];
@@ -225,7 +225,7 @@ static void AddTouchBlock(void *ctx, const LamTouchBlock *block)
       c->Lq[q] += F33 * s->s * block->f[j] * Sj;
       for (PetscInt k = 0; k < 3; ++k) c->Lqq[q][q3[k]] += factor[k] * block->f[j] * Sj;
       c->Lqq[q][Q_WIDTH] += F33 * s->s * block->f_width[j] * Sj;
-      for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) {
+      for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) {
         const PetscReal K = F33 * s->s * block->K[i][j] * Sj;
 
         c->R[q * c->size + 2 * block->class[i / 2] + i % 2] += K;

@@ -3,19 +3,18 @@
 
   Method. From a near solution of the exact law, its own iteration is tried first (sharpen.c). Otherwise, or if that
   fails, the smooth law finds a state: its energy is minimised (minimise.c) from the state before, moved affinely, or
-  from the initial guess of the strategy, at decreasing widths. The exact law then follows from the smooth state if it
-  applies: hardly any force between walls that do not face each other. It is tried again from a narrower smooth state.
-  It is taken if it is a minimum of no higher energy; otherwise the smooth state is the answer, at the usual width.
+  from the initial guess of the strategy, loosely and at a wide width. The exact law then follows from there if it
+  applies: hardly any force between walls that do not face each other. If it fails, the smooth law is solved at the
+  usual width, and the exact law is tried again. It is taken if it is a minimum of no higher energy; otherwise the
+  smooth state is the answer.
 */
 #include "contact_find.h"
 
 #define NEAR 0.04               /* largest change of F, turgor (C1 + C2) and cohesion (C1 + C2) that counts as near */
 #define NEAR_EXACT 0.2          /* the same for the iteration of the exact law, ... */
 #define LEAST_WALK (1.0 / 16.0) /* ... and the least step of a path of its states */
-#define FIRST_WIDTH 0.03        /* apothems: far from a solution, ... */
-#define SEARCH_WIDTH 0.01       /* ... near one; the exact law is tried from here, ... */
-#define NARROW_WIDTH 1e-3       /* ... and from here; narrower ones help no more */
-#define LOOSE 1e-3              /* tolerance of states on the way */
+#define SEARCH_WIDTH 0.02       /* apothems: states are searched, and the exact law tried from them */
+#define LOOSE 0.03              /* tolerance of states on the way */
 #define OTHERS 0.02             /* largest share of the contact force that the exact law may leave out */
 #define EDGE_SHARE 0.2          /* penetration of the exact law attributed to the mesh, in edge lengths, ... */
 #define WALL_SHARE 0.5          /* ... and in wall thicknesses */
@@ -103,21 +102,14 @@ static PetscErrorCode WalkExact(LamRVE rve, const LamLoad *load, LamRVEState bef
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, PetscBool near,
-                                LamContactOutcome *out)
+PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, LamContactOutcome *out)
 {
-  LamNewtonOutcome outcome = LAM_NEWTON_CONVERGED;
+  LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
   *out = LAM_NO_OUTCOME;
-  if (!near) {
-    PetscCall(LamUseSmoothLaw(rve, FIRST_WIDTH));
-    PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
-  }
-  if (outcome == LAM_NEWTON_CONVERGED) {
-    PetscCall(LamUseSmoothLaw(rve, SEARCH_WIDTH));
-    PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
-  }
+  PetscCall(LamUseSmoothLaw(rve, SEARCH_WIDTH));
+  PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->shut));
   out->found = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && out->shut < 0);
   PetscFunctionReturn(0);
@@ -194,13 +186,9 @@ PetscErrorCode LamContactFinish(LamRVE rve, const LamLoad *load, LamBorder *bord
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(TryExact(rve, load, border, at, out));
   if (!LamIsExact(rve)) {
-    LamNewtonOutcome outcome;
-
-    PetscCall(LamUseSmoothLaw(rve, NARROW_WIDTH));
-    PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
-    if (outcome == LAM_NEWTON_CONVERGED) PetscCall(TryExact(rve, load, border, at, out));
+    PetscCall(Settle(rve, load, border, LAM_USUAL_WIDTH, out));
+    if (out->found) PetscCall(TryExact(rve, load, border, at, out));
   }
-  if (!LamIsExact(rve)) PetscCall(Settle(rve, load, border, LAM_USUAL_WIDTH, out));
   PetscCall(LamRVEStateDestroy(&at));
   PetscFunctionReturn(0);
 }
@@ -246,7 +234,6 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
                               LamContactOutcome *out)
 {
   const LamLoad guess = *LoadOf(load, border);
-  const PetscBool near = (PetscBool)(before->solved && IsWithin(&before->load, &guess, NEAR));
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -262,7 +249,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
       LamContactStartNear(rve, before, &guess);
     else
       PetscCall(Start(rve, &guess, rve->strategy, &ok));
-    if (ok) PetscCall(LamContactSearch(rve, load, border, (PetscBool)(k == 0 && near), out));
+    if (ok) PetscCall(LamContactSearch(rve, load, border, out));
   }
   if (out->found) PetscCall(LamContactFinish(rve, load, border, out));
   if (out->found && !border && !LamIsExact(rve) && WantsExact(rve, before))

@@ -29,7 +29,7 @@ static LamWalls *WallsOf(LamRVE rve)
 /* Number of a point among those of all loops. */
 static int PointOf(const LamWalls *walls, const LamTouching *touch)
 {
-  return LAM_TOUCH_POINTS * (touch->loop * walls->nodes + touch->span) + touch->point;
+  return LAM_TOUCH_POINTS * (touch->loop * walls->spans + touch->span) + touch->point;
 }
 
 /* The search with undeformed cells whose centres follow F. */
@@ -93,7 +93,7 @@ static int SearchAtRest(void **state)
     size_t points;
 
     r->rve = NewRVE(&micro);
-    points = (size_t)(LAM_TOUCH_POINTS * WallsOf(r->rve)->loops * WallsOf(r->rve)->nodes);
+    points = (size_t)(LAM_TOUCH_POINTS * WallsOf(r->rve)->loops * WallsOf(r->rve)->spans);
     r->partners = calloc(points, sizeof(*r->partners));
     r->gap = calloc(points, sizeof(*r->gap));
     Search(r->rve, turned_identity, CountAtRest, r);
@@ -130,8 +130,8 @@ TEST(UndeformedLumensAreOpen)
 #define FOR_FLAT_POINTS(r, cell, face, at)                                                                             \
   for (int cell = 0; cell < r->rve->mesh.cell_count; cell++)                                                           \
     for (int face = 0; face < LAM_FACES; face++)                                                                       \
-      for (int at = LAM_TOUCH_POINTS * (2 * cell * WallsOf(r->rve)->nodes + PER_FACE * face + 1),                      \
-               end_##at = at + LAM_TOUCH_POINTS * (PER_FACE - 2);                                                      \
+      for (int at = LAM_TOUCH_POINTS * (2 * cell * WallsOf(r->rve)->spans + (PER_FACE + 1) * face),                    \
+               end_##at = at + LAM_TOUCH_POINTS * PER_FACE;                                                            \
            at < end_##at; at++)
 
 static int HasNeighbour(const Rest *r, int cell, int face)
@@ -167,11 +167,40 @@ TEST(WallsOnTheBorderOfAPatchTouchNothing)
   assert_true(border > 0);
 }
 
-TEST(WeightsAreTheLengthOfTheWalls)
+#define NODE_LENGTH (2.0 / sqrt(3.0) / PER_FACE)
+
+TEST(WeightsAreTheLengthOfTheWallsButAtCorners)
 {
   FOR_TISSUES(r)
   FOR_FLAT_POINTS(r, cell, face, at)
-  assert_near(WallsOf(r->rve)->weight[at], 2.0 / sqrt(3.0) / (PER_FACE * LAM_TOUCH_POINTS), ROUNDING);
+  {
+    const int span = at / LAM_TOUCH_POINTS % (PER_FACE + 1);
+
+    if (span == 0 || span == PER_FACE - 1) continue;
+    assert_near(WallsOf(r->rve)->weight[at], NODE_LENGTH / LAM_TOUCH_POINTS, ROUNDING);
+  }
+}
+
+/* Force on a node of the first face under a pressure of one on the contour of the outer walls of the first cell. */
+static double ForceOfPressure(const LamWalls *walls, int node)
+{
+  double force = 0.0;
+
+  for (int span = 0; span < PER_FACE; span++)
+    for (int q = 0; q < LAM_TOUCH_POINTS; q++)
+      for (int a = 0; a < LAM_SPAN; a++)
+        for (int k = 0; k < LAM_SPAN_NODES; k++)
+          if (LamWallsNode(walls, 0, span, k) == walls->node[node])
+            force += walls->weight[LAM_TOUCH_POINTS * span + q] * walls->at[q].N[a] * walls->of[span].share[a][k];
+  return force;
+}
+
+/* Node 4 lies at the end of an element, 3 and 5 in the middle. */
+TEST(PressureOnAFlatWallLoadsItAsOnItsElements)
+{
+  FOR_TISSUES(r)
+  for (int node = 3; node <= 5; node++)
+    assert_near(ForceOfPressure(WallsOf(r->rve), node), NODE_LENGTH * (node == 4 ? 2.0 : 4.0) / 3.0, ROUNDING);
 }
 
 static void LargestGap(void *ctx, const LamTouching *touch)
@@ -213,7 +242,7 @@ static size_t PairOf(const Pairs *p, int i, int j, int span, int point, int othe
 {
   const size_t image = (size_t)((i + PERIODS) * IMAGES + j + PERIODS);
 
-  return (image * LAM_TOUCH_POINTS * p->walls->nodes + LAM_TOUCH_POINTS * span + point) * p->walls->nodes + other;
+  return (image * LAM_TOUCH_POINTS * p->walls->spans + LAM_TOUCH_POINTS * span + point) * p->walls->spans + other;
 }
 
 static void MarkFound(void *ctx, const LamTouching *touch)
@@ -233,10 +262,10 @@ static void MarkFound(void *ctx, const LamTouching *touch)
     p->found[PairOf(p, i, j, touch->span, touch->point, touch->at)]++;
 }
 
-/* A span of a loop of one cell, from the positions of its nodes. */
+/* Control points of a span of the outer walls of one cell. */
 static void SpanOf(const LamWalls *walls, int span, double c[LAM_SPAN][2])
 {
-  for (int a = 0; a < LAM_SPAN; a++) memcpy(c[a], walls->x[(span + a - 1 + walls->nodes) % walls->nodes], sizeof(c[a]));
+  for (int a = 0; a < LAM_SPAN; a++) memcpy(c[a], walls->x[(span + a - 1 + walls->spans) % walls->spans], sizeof(c[a]));
 }
 
 /* (X - y).tau at t. */
@@ -270,7 +299,7 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
 {
   const LamWalls *walls = p->walls;
   const double(*L)[2] = walls->mesh->period, S[2] = {i * L[0][0] + j * L[1][0], i * L[0][1] + j * L[1][1]};
-  const int n = walls->nodes, itself = i == 0 && j == 0;
+  const int n = walls->spans, itself = i == 0 && j == 0;
   double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], tau[2];
 
   SpanOf(walls, span, own);
@@ -288,7 +317,7 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
 
 static void PairsEnter(Pairs *p, LamRVE rve)
 {
-  const size_t n = (size_t)WallsOf(rve)->nodes;
+  const size_t n = (size_t)WallsOf(rve)->spans;
 
   *p = (Pairs){.walls = WallsOf(rve), .found = calloc(IMAGES * IMAGES * LAM_TOUCH_POINTS * n * n, 1)};
   Search(rve, sheared, MarkFound, p);
@@ -296,7 +325,7 @@ static void PairsEnter(Pairs *p, LamRVE rve)
 
 TEST_ON(AllImagesOfAShearedPeriodAreFound, Pairs, p, PairsEnter(p, rest[ONE].rve), free(p->found))
 {
-  const int n = p->walls->nodes;
+  const int n = p->walls->spans;
 
   assert_int_equal(p->outside, 0);
   for (int i = -PERIODS; i <= PERIODS; i++)
@@ -378,16 +407,16 @@ typedef struct {
   int nearest;        /* least distance of two spans that touch */
 } Slit;
 
-/* Whether a span lies in one of the two faces across X1, with all its control points. */
+/* Whether a span lies in one of the two faces across X1, with all its nodes. */
 static int IsAcross(const Slit *s, int span)
 {
   const LamWalls *walls = WallsOf(s->rve);
   const double apothem = s->loop == LUMEN ? 1.0 - walls->thickness[0] : 1.0;
   int across = 0;
 
-  for (int a = 0; a < LAM_SPAN; a++)
-    across += fabs(fabs(walls->mesh->X[2 * LamWallsControl(walls, s->loop, span, a)]) - apothem) < 1e-9;
-  return across == LAM_SPAN;
+  for (int k = 0; k < LAM_SPAN_NODES; k++)
+    across += fabs(fabs(walls->mesh->X[2 * LamWallsNode(walls, s->loop, span, k)]) - apothem) < 1e-9;
+  return across == LAM_SPAN_NODES;
 }
 
 static void CountSlit(void *ctx, const LamTouching *touch)
@@ -396,7 +425,7 @@ static void CountSlit(void *ctx, const LamTouching *touch)
   const int between = abs(touch->span - touch->at);
 
   if (touch->loop != s->loop || touch->other != s->loop || hypot(touch->shift[0], touch->shift[1]) > 0.0) return;
-  s->nearest = PetscMin(s->nearest, PetscMin(between, WallsOf(s->rve)->nodes - between));
+  s->nearest = PetscMin(s->nearest, PetscMin(between, WallsOf(s->rve)->spans - between));
   if (!IsAcross(s, touch->span)) return;
   s->partners[LAM_TOUCH_POINTS * touch->span + touch->point]++;
   s->least = fmin(s->least, touch->gap.gap);
@@ -411,8 +440,8 @@ static void SlitEnter(Slit *s, int loop, double distance)
   const LamWalls *walls = WallsOf(rve);
   OWNED(LamRVEState, LamRVEStateDestroy) state = NewState(rve);
 
-  *s = (Slit){.rve = rve, .loop = loop, .least = 1.0, .most = -1.0, .nearest = walls->nodes};
-  s->partners = calloc((size_t)(LAM_TOUCH_POINTS * walls->nodes), sizeof(*s->partners));
+  *s = (Slit){.rve = rve, .loop = loop, .least = 1.0, .most = -1.0, .nearest = walls->spans};
+  s->partners = calloc((size_t)(LAM_TOUCH_POINTS * walls->spans), sizeof(*s->partners));
   for (int i = 0; i < walls->nodes; i++)
     state->y[2 * rve->mesh.node_class[walls->node[loop * walls->nodes + i]]] *=
         0.5 * distance / (loop == LUMEN ? 1.0 - walls->thickness[0] : 1.0);
@@ -424,7 +453,7 @@ static void AssertPartners(const Slit *s, int partners)
 {
   int spans = 0;
 
-  for (int span = 0; span < WallsOf(s->rve)->nodes; span++) {
+  for (int span = 0; span < WallsOf(s->rve)->spans; span++) {
     if (!IsAcross(s, span)) continue;
     spans++;
     for (int q = 0; q < LAM_TOUCH_POINTS; q++) assert_int_equal(s->partners[LAM_TOUCH_POINTS * span + q], partners);

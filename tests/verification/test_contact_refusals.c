@@ -39,7 +39,6 @@ static void FindLargestTurgor(double turgor, double between[2])
   for (int c = 0; c < 4; c++) cells[c] = (LamCell){micro.wall_thickness, micro.wall, c ? 1.0 : 1.3, 1.0};
   micro.cell = cells;
   r = SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, turgor));
-  printf("%d %s %d its\n", r.status, r.reason, (int)r.newton_iterations);
   assert_false(LamResponseHasFields(&r));
   assert_int_equal(sscanf(strstr(r.reason, "between"), "between %lf and %lf of the way", &between[0], &between[1]), 2);
   between[0] *= turgor;

@@ -74,7 +74,7 @@ TEST(WidthIsThatOfStatesBetweenTheKnots)
     double a[3];
 
     LamFreeCellStrain(&cell, s, a);
-    assert_near(a[0], log(exp(0.35) - 0.5 * SolveApart(0.35, s - COHESION, COHESION).min_gap), 1e-4);
+    assert_near(a[0], log(exp(0.35) - 0.5 * SolveApart(0.35, s - COHESION, COHESION).min_gap), 1e-6);
   }
 }
 
