@@ -25,7 +25,8 @@
 #define SHIFT_GROWTH 30.0
 #define SHIFTS 9
 #define NEAR_SHIFTS 4 /* from a near solution */
-#define FOLLOW 5      /* first iterations after which the junction status follows */
+#define FOLLOW 5      /* first iterations after which the junction status follows, ... */
+#define NEAR_FOLLOW 3 /* ... from a near solution not before this one: the first steps may be long */
 #define IDLE 12 /* iterations without progress that end the iteration; of stiff walls the residual grows for a few */
 #define NEAR_IDLE 5
 #define PROGRESS 0.5
@@ -147,7 +148,7 @@ PetscErrorCode LamSharpen(LamRVE rve, const LamLoad *load, LamBorder *border, Pe
   const PetscReal tolerance = LamNewtonTolerance(rve), limit = reach > 0.0 ? PETSC_INFINITY : STEP_LIMIT;
   const PetscInt n = rve->linear->n;
   PetscReal least = PETSC_INFINITY;
-  PetscInt idle = 0, restarts = 0;
+  PetscInt idle = 0, restarts = 0, started = 0;
   PetscBool at_rounding = PETSC_FALSE;
   Step step = {.rve = rve, .border = border, .near = (PetscBool)(reach > 0.0), .before = PETSC_INFINITY};
 
@@ -160,7 +161,7 @@ PetscErrorCode LamSharpen(LamRVE rve, const LamLoad *load, LamBorder *border, Pe
     PetscInt changes;
     PetscBool valid, ok;
 
-    if (it > 0 && it <= FOLLOW) (void)LamContactMerge(rve, load, rve->y);
+    if (it >= (step.near ? NEAR_FOLLOW : 1) && it <= FOLLOW) (void)LamContactMerge(rve, load, rve->y);
     PetscCall(LamContactEvaluate(rve, load, rve->y));
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
     if (!valid) break;
@@ -173,6 +174,7 @@ PetscErrorCode LamSharpen(LamRVE rve, const LamLoad *load, LamBorder *border, Pe
       *outcome = LAM_NEWTON_CONVERGED;
       if (restarts++ == RESTARTS || !LamContactMerge(rve, load, rve->y)) break;
       *outcome = LAM_NEWTON_STALLED;
+      started = it;
       idle = 0;
       least = PETSC_INFINITY;
       continue;
@@ -191,7 +193,7 @@ PetscErrorCode LamSharpen(LamRVE rve, const LamLoad *load, LamBorder *border, Pe
     alpha = LamValidStep(rve, load, border, PetscMin(1.0, limit / PetscMax(largest, 1e-300)), LEAST_STEP);
     if (alpha == 0.0) break;
     at_rounding = (PetscBool)(changes == 0 && IsAtRounding(&step, norm, tolerance, largest));
-    if (it >= CYCLE_AFTER && changes > 0) alpha *= 0.5;
+    if (it >= started + CYCLE_AFTER && changes > 0) alpha *= 0.5;
     LamTakeStep(rve, load, border, alpha);
     for (PetscInt h = 0; h < rve->contact->count; ++h)
       rve->contact->lambda[h] += alpha * (step.lambda[h] - rve->contact->lambda[h]);
