@@ -242,6 +242,7 @@ PetscErrorCode LamUseSmoothLaw(LamRVE rve, PetscReal width)
   PetscFunctionBeginUser;
   rve->contact->exact = PETSC_FALSE;
   rve->smooth->width = width;
+  LamWallsRound(&rve->smooth->walls, width);
   Use(rve, rve->systems[LAM_SYSTEM_GROWN].factor ? LAM_SYSTEM_GROWN : LAM_SYSTEM_BASE);
   PetscFunctionReturn(0);
 }
@@ -263,6 +264,7 @@ PetscErrorCode LamUseExactLaw(LamRVE rve)
     PetscCall(LamLinearCreateMatrix(rve->comm, linear));
   }
   rve->contact->exact = PETSC_TRUE;
+  LamWallsRound(&rve->smooth->walls, 0.0);
   Use(rve, LAM_SYSTEM_EXACT);
   PetscFunctionReturn(0);
 }

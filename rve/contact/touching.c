@@ -1,6 +1,8 @@
 #include "touching.h"
 
-#define DEEPEST 0.25 /* apothems: deeper points belong to another wall; above the longest step of the solver */
+#define BEVEL 0.5      /* of a corner, in widths, ... */
+#define MOST_BEVEL 0.1 /* ... and at most this share of a span: rounder corners of turgid cells bear too little */
+#define DEEPEST 0.25   /* apothems: deeper points belong to another wall; above the longest step of the solver */
 
 static void ListNodes(const LamMesh *mesh, LamWalls *walls)
 {
@@ -13,28 +15,34 @@ static void ListNodes(const LamMesh *mesh, LamWalls *walls)
     }
 }
 
-/* Node of a loop at control point i, or nearest to it; both copies of a corner have the same. */
-static PetscInt NodeOfControl(const LamWalls *walls, PetscInt i)
+/* Share of the nodes 0..4 of a span in control point i. */
+static void ShareControl(const LamWalls *walls, PetscInt i, PetscInt first, PetscReal share[LAM_SPAN_NODES])
 {
-  PetscInt half, face = LamWallsFace(walls, (i + walls->spans) % walls->spans, &half);
+  PetscInt half, node;
+  const PetscInt face = LamWallsFace(walls, (i + walls->spans) % walls->spans, &half), last = 2 * walls->mesh->along;
 
-  return (2 * walls->mesh->along * face + half) % walls->nodes;
+  node = (last * face + half - first + walls->nodes) % walls->nodes;
+  (void)PetscArrayzero(share, LAM_SPAN_NODES);
+  if (half == 0 || half == last) { /* at a corner */
+    share[node] = 1.0 - walls->bevel;
+    share[half == 0 ? node + 1 : node - 1] = walls->bevel;
+  } else if (half % 2) {
+    share[node] = 4.0 / 3.0;
+    share[node - 1] = share[node + 1] = -1.0 / 6.0;
+  } else {
+    share[node] = 1.0;
+  }
 }
 
 static void ShareNodes(LamWalls *walls)
 {
   for (PetscInt span = 0; span < walls->spans; ++span) {
     LamSpanNodes *of = &walls->of[span];
-    const PetscInt start = NodeOfControl(walls, span);
+    PetscInt half, start = LamWallsFace(walls, span, &half);
 
-    *of = (LamSpanNodes){.first = (start - 2 + start % 2 + walls->nodes) % walls->nodes};
-    for (PetscInt a = 0; a < LAM_SPAN; ++a) {
-      const PetscInt node = NodeOfControl(walls, span + a - 1);
-      PetscReal *share = &of->share[a][(node - of->first + walls->nodes) % walls->nodes];
-
-      share[0] = node % 2 ? 4.0 / 3.0 : 1.0;
-      if (node % 2) share[-1] = share[1] = -1.0 / 6.0;
-    }
+    start = 2 * walls->mesh->along * start + half;
+    of->first = (start - 2 + start % 2 + walls->nodes) % walls->nodes;
+    for (PetscInt a = 0; a < LAM_SPAN; ++a) ShareControl(walls, span + a - 1, of->first, of->share[a]);
   }
 }
 
@@ -55,6 +63,17 @@ static void Weigh(const LamMesh *mesh, LamWalls *walls)
     }
 }
 
+void LamWallsRound(LamWalls *walls, PetscReal width)
+{
+  const PetscReal h = 0.5 * LamShortestEdge(walls->mesh);
+  const PetscReal bevel = PetscMin(MOST_BEVEL, BEVEL * width / h);
+
+  if (bevel == walls->bevel) return;
+  walls->bevel = bevel;
+  ShareNodes(walls);
+  Weigh(walls->mesh, walls);
+}
+
 PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamWalls *walls)
 {
   PetscInt all;
@@ -73,8 +92,8 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineWeightsAt(((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, &walls->at[q]);
   ListNodes(mesh, walls);
-  ShareNodes(walls);
-  Weigh(mesh, walls);
+  walls->bevel = -1.0;
+  LamWallsRound(walls, 0.0);
   PetscFunctionReturn(0);
 }
 

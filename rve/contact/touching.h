@@ -5,8 +5,10 @@
   Each cell has two contours (smooth.h): its outer walls, counter-clockwise, and its lumen, clockwise, so that the
   outward side of both is outside the wall. Control points are the nodes at the ends of elements, and at their middle
     c_m = x_m + (2 x_m - x_e - x_f)/6,    x_e, x_f the ends,
-  so that a uniform pressure on a straight contour loads the nodes as one on the elements does, 1 : 4 : 1. The corners
-  of a cell are control points twice: the contour is straight up to them and rounds them within a sixth of a span.
+  so that a uniform pressure on a straight contour loads the nodes as one on the elements does, 1 : 4 : 1. A corner v of
+  a cell has two control points,
+    (1 - bevel) v + bevel m   with the nodes m next to it on either side:
+  the contour is straight up to them and rounds the corner within a few tenths of a span, the more the wider the law.
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 */
@@ -34,6 +36,7 @@ typedef struct {
 typedef struct {
   const LamMesh *mesh;                   /* borrowed */
   PetscInt loops, nodes, spans;          /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; of a loop */
+  PetscReal bevel;                       /* of corners, in spans */
   LamSpanNodes *of;                      /* [span] of any loop */
   PetscBool is_patch;                    /* no images */
   PetscInt apart;                        /* least distance of points of one loop that may touch, in spans */
@@ -50,6 +53,8 @@ typedef struct {
 } LamWalls;
 
 PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamWalls *walls);
+/* Sets the corners for a law of this width. */
+void LamWallsRound(LamWalls *walls, PetscReal width);
 PetscErrorCode LamWallsDestroy(LamWalls *walls);
 /* Takes the positions of a state. */
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[]);

@@ -13,7 +13,6 @@
 #define NEAR 0.04               /* largest change of F, turgor (C1 + C2) and cohesion (C1 + C2) that counts as near */
 #define NEAR_EXACT 0.2          /* the same for the iteration of the exact law, ... */
 #define LEAST_WALK (1.0 / 16.0) /* ... and the least step of a path of its states */
-#define SEARCH_WIDTH 0.02       /* apothems: states are searched, and the exact law tried from them */
 #define LOOSE 0.03              /* tolerance of states on the way */
 #define OTHERS 0.02             /* largest share of the contact force that the exact law may leave out */
 #define EDGE_SHARE 0.2          /* penetration of the exact law attributed to the mesh, in edge lengths, ... */
@@ -102,13 +101,14 @@ static PetscErrorCode WalkExact(LamRVE rve, const LamLoad *load, LamRVEState bef
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, LamContactOutcome *out)
+PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal width,
+                                LamContactOutcome *out)
 {
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
   *out = LAM_NO_OUTCOME;
-  PetscCall(LamUseSmoothLaw(rve, SEARCH_WIDTH));
+  PetscCall(LamUseSmoothLaw(rve, width));
   PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->shut));
   out->found = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && out->shut < 0);
@@ -234,6 +234,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
                               LamContactOutcome *out)
 {
   const LamLoad guess = *LoadOf(load, border);
+  const PetscBool near = (PetscBool)(before->solved && before->width > 0.0 && IsWithin(&before->load, &guess, NEAR));
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -249,7 +250,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
       LamContactStartNear(rve, before, &guess);
     else
       PetscCall(Start(rve, &guess, rve->strategy, &ok));
-    if (ok) PetscCall(LamContactSearch(rve, load, border, out));
+    if (ok) PetscCall(LamContactSearch(rve, load, border, k == 0 && near ? before->width : LAM_SEARCH_WIDTH, out));
   }
   if (out->found) PetscCall(LamContactFinish(rve, load, border, out));
   if (out->found && !border && !LamIsExact(rve) && WantsExact(rve, before))

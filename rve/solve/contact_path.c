@@ -40,7 +40,7 @@ static PetscErrorCode Walk(LamRVE rve, LamRVEState at, const LamLoad *load, Way 
 
     if (step < least) break;
     LamContactStartNear(rve, at, &next);
-    PetscCall(LamContactSearch(rve, &next, NULL, out));
+    PetscCall(LamContactSearch(rve, &next, NULL, LAM_SEARCH_WIDTH, out));
     if (out->found) {
       LamKeepState(rve, &next, at->branch, at);
       LamWatchKinks(rve, &next, at->y, t, &way->kinking);

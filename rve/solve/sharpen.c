@@ -29,7 +29,7 @@
 #define NEAR_FOLLOW 3 /* ... from a near solution not before this one: the first steps may be long */
 #define IDLE 12 /* iterations without progress that end the iteration; of stiff walls the residual grows for a few */
 #define NEAR_IDLE 5
-#define PROGRESS 0.5
+#define PROGRESS 0.7          /* steps halved to break a cycle reduce the residual by half */
 #define RESTARTS 2            /* after a solution has changed the junction status */
 #define CYCLE_AFTER 9         /* iterations, after which steps that change the active set are halved to break cycles */
 #define ROUNDING_MARGIN 100.0 /* times the tolerance: smaller residuals may be rounding errors, ... */
