@@ -1,7 +1,7 @@
 #include "touching.h"
 
-#define BEVEL 0.5      /* of a corner, in widths, ... */
-#define MOST_BEVEL 0.1 /* ... and at most this share of a span: rounder corners of turgid cells bear too little */
+#define WIDE 0.02      /* apothems: width of a law that needs rounder corners to pass them, ... */
+#define WIDE_BEVEL 0.1 /* ... in spans; rounder ones of turgid cells bear too little */
 #define DEEPEST 0.25   /* apothems: deeper points belong to another wall; above the longest step of the solver */
 
 static void ListNodes(const LamMesh *mesh, LamWalls *walls)
@@ -65,8 +65,7 @@ static void Weigh(const LamMesh *mesh, LamWalls *walls)
 
 void LamWallsRound(LamWalls *walls, PetscReal width)
 {
-  const PetscReal h = 0.5 * LamShortestEdge(walls->mesh);
-  const PetscReal bevel = PetscMin(MOST_BEVEL, BEVEL * width / h);
+  const PetscReal bevel = width >= WIDE ? WIDE_BEVEL : 0.0;
 
   if (bevel == walls->bevel) return;
   walls->bevel = bevel;

@@ -6,9 +6,8 @@
   outward side of both is outside the wall. Control points are the nodes at the ends of elements, and at their middle
     c_m = x_m + (2 x_m - x_e - x_f)/6,    x_e, x_f the ends,
   so that a uniform pressure on a straight contour loads the nodes as one on the elements does, 1 : 4 : 1. A corner v of
-  a cell has two control points,
-    (1 - bevel) v + bevel m   with the nodes m next to it on either side:
-  the contour is straight up to them and rounds the corner within a few tenths of a span, the more the wider the law.
+  a cell has two control points: the contour is straight up to them and rounds the corner within a sixth of a span. For
+  wide laws they lie at (1 - bevel) v + bevel m, with the nodes m next to it.
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 */

@@ -13,7 +13,7 @@
 #define NEAR 0.04               /* largest change of F, turgor (C1 + C2) and cohesion (C1 + C2) that counts as near */
 #define NEAR_EXACT 0.2          /* the same for the iteration of the exact law, ... */
 #define LEAST_WALK (1.0 / 16.0) /* ... and the least step of a path of its states */
-#define LOOSE 0.03              /* tolerance of states on the way */
+#define LOOSE 0.03              /* tolerance of states from which the exact law is tried */
 #define OTHERS 0.02             /* largest share of the contact force that the exact law may leave out */
 #define EDGE_SHARE 0.2          /* penetration of the exact law attributed to the mesh, in edge lengths, ... */
 #define WALL_SHARE 0.5          /* ... and in wall thicknesses */
@@ -102,14 +102,14 @@ static PetscErrorCode WalkExact(LamRVE rve, const LamLoad *load, LamRVEState bef
 }
 
 PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal width,
-                                LamContactOutcome *out)
+                                PetscReal tolerance, LamContactOutcome *out)
 {
   LamNewtonOutcome outcome;
 
   PetscFunctionBeginUser;
   *out = LAM_NO_OUTCOME;
   PetscCall(LamUseSmoothLaw(rve, width));
-  PetscCall(LamMinimise(rve, LoadOf(load, border), border, LOOSE, &outcome));
+  PetscCall(LamMinimise(rve, LoadOf(load, border), border, tolerance, &outcome));
   PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->shut));
   out->found = (PetscBool)(outcome == LAM_NEWTON_CONVERGED && out->shut < 0);
   PetscFunctionReturn(0);
@@ -250,7 +250,8 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
       LamContactStartNear(rve, before, &guess);
     else
       PetscCall(Start(rve, &guess, rve->strategy, &ok));
-    if (ok) PetscCall(LamContactSearch(rve, load, border, k == 0 && near ? before->width : LAM_SEARCH_WIDTH, out));
+    if (ok)
+      PetscCall(LamContactSearch(rve, load, border, k == 0 && near ? before->width : LAM_SEARCH_WIDTH, LOOSE, out));
   }
   if (out->found) PetscCall(LamContactFinish(rve, load, border, out));
   if (out->found && !border && !LamIsExact(rve) && WantsExact(rve, before))

@@ -36,10 +36,10 @@ static inline PetscBool LamContactIsStable(const LamContactOutcome *out)
 /* Finds a state at `load` from the state before (rotated; not solved: none). border: as in LamNewtonFast. */
 PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border, LamRVEState before,
                               LamContactOutcome *out);
-/* The smooth law's part of it, from the present initial guess: a state at a width, solved loosely. */
+/* The smooth law's part of it, from the present initial guess: a state at a width. */
 #define LAM_SEARCH_WIDTH 0.02 /* apothems: far from a state, and to try the exact law from */
 PetscErrorCode LamContactSearch(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal width,
-                                LamContactOutcome *out);
+                                PetscReal tolerance, LamContactOutcome *out);
 /* From that state to the law that is wanted. */
 PetscErrorCode LamContactFinish(LamRVE rve, const LamLoad *load, LamBorder *border, LamContactOutcome *out);
 

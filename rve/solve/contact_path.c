@@ -11,6 +11,7 @@
 #define FIRST_STEP 0.25
 #define LEAST_STEP (1.0 / 256.0)
 #define GROWTH 2.0
+#define TOLERANCE 1e-3 /* of states on the path: looser ones leave their branch before it ends */
 
 typedef struct {
   PetscReal between[2]; /* path parameters of the last state and of the failure after it */
@@ -40,7 +41,7 @@ static PetscErrorCode Walk(LamRVE rve, LamRVEState at, const LamLoad *load, Way 
 
     if (step < least) break;
     LamContactStartNear(rve, at, &next);
-    PetscCall(LamContactSearch(rve, &next, NULL, LAM_SEARCH_WIDTH, out));
+    PetscCall(LamContactSearch(rve, &next, NULL, LAM_SEARCH_WIDTH, TOLERANCE, out));
     if (out->found) {
       LamKeepState(rve, &next, at->branch, at);
       LamWatchKinks(rve, &next, at->y, t, &way->kinking);

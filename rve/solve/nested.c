@@ -172,7 +172,7 @@ static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve,
       ProlongContact(coarse, from, rve);
       PetscCall(LamSharpen(rve, load, NULL, LAM_NEAR_REACH, &outcome));
     } else {
-      PetscCall(LamContactSearch(rve, load, NULL, LAM_SEARCH_WIDTH, &out));
+      PetscCall(LamContactSearch(rve, load, NULL, LAM_SEARCH_WIDTH, LamNewtonTolerance(rve), &out));
       outcome = out.found ? LAM_NEWTON_CONVERGED : LAM_NEWTON_STALLED;
     }
   } else {
