@@ -2,7 +2,7 @@
   Contact with cohesion between the outer walls of neighbouring cells.
 
   Faces 0, 1, 2 of each cell are slaves; the master of face k is face k + 3 of the neighbouring cell or of its image.
-  Terms of the potential (docs/theory/contact.md):
+  Terms of the potential (docs/theory/mortar.md, The discrete Lagrangian):
     - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
     + g F33 A_gap(x, F)            cohesion, in gap_area.c
   F enters only through the images' shifts F S.

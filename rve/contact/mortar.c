@@ -9,7 +9,7 @@
   All terms are kept: the Newton iteration and the effective tangent need them.
 
   References. Puso & Laursen, Comput. Methods Appl. Mech. Engrg 193 (2004) 601 (segment mortar); Popp, Gee & Wall, Int.
-  J. Numer. Meth. Engng 79 (2009) 1354 (linearisation); docs/theory/contact.md, First and second variation.
+  J. Numer. Meth. Engng 79 (2009) 1354 (linearisation); docs/theory/mortar.md, First and second variation.
 */
 #include "mortar_impl.h"
 

@@ -1,6 +1,6 @@
 /*
   Segment mortar contact of two chains of quadratic edges: geometry, weighted gaps and their first and second variation.
-  Independent of cells; all formulas are derived in docs/theory/contact.md.
+  Independent of cells; all formulas are derived in docs/theory/mortar.md.
 
   The slave chain has n edges and nodes x[2n+1], the master chain m edges and nodes y[2m+1] (of the image that faces the
   slave). Both loops run counter-clockwise around their own cell, so the chains run in opposite directions. Edge e
