@@ -380,7 +380,8 @@ static PetscBool ReadFamilies(Command *run, int *exit_status)
     while (k < LAM_KNOB_COUNT && strcmp(word, LamKnobNames[k])) k++;
     if (k == LAM_KNOB_COUNT)
       return LamUsageError("tradeoff", exit_status,
-                           "--only \"%s\": there are mesh, strategy, cells, tolerance, database, macro", word);
+                           "--only \"%s\": there are mesh, strategy, sharpness, cells, tolerance, database, macro",
+                           word);
     run->tradeoff.chosen[k] = PETSC_TRUE;
   }
   return PETSC_TRUE;
@@ -423,7 +424,8 @@ PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status)
        &run.directory},
       {0, "budget", LAM_OPTION_TEXT, "SECONDS", "how long it may measure, in all; default 120", &run.budget_text},
       {0, "repeats", LAM_OPTION_FROM_1, "N", "how often each setting is measured; default 3", &run.tradeoff.repeats},
-      {0, "only", LAM_OPTION_TEXT, "FAMILY,...", "of mesh, strategy, cells, tolerance, database, macro", &run.only},
+      {0, "only", LAM_OPTION_TEXT, "FAMILY,...", "of mesh, strategy, sharpness, cells, tolerance, database, macro",
+       &run.only},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per setting on stdout", &run.console.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &run.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},

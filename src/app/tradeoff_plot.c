@@ -46,7 +46,8 @@ static PetscBool Belongs(const Group *g, const LamSetting *s)
 static LamStyle StyleOf(const Group *g, PetscInt meshes)
 {
   static const LamMarker markers[] = {LAM_MARKER_CIRCLE,   LAM_MARKER_DIAMOND,       LAM_MARKER_SQUARE,
-                                      LAM_MARKER_TRIANGLE, LAM_MARKER_TRIANGLE_DOWN, LAM_MARKER_DIAMOND};
+                                      LAM_MARKER_TRIANGLE, LAM_MARKER_TRIANGLE_DOWN, LAM_MARKER_DIAMOND,
+                                      LAM_MARKER_SQUARE};
   const PetscBool graded = (PetscBool)(g->grading > 0);
   LamStyle style = {LamColourOfLine(g->knob + 2), markers[g->knob], PETSC_FALSE, PETSC_TRUE, PETSC_FALSE};
 
@@ -60,6 +61,7 @@ static LamStyle StyleOf(const Group *g, PetscInt meshes)
 static void NameGroup(const Group *g, char label[LAM_SERIES_LABEL])
 {
   static const char *const names[] = {[LAM_KNOB_STRATEGY] = "strategy",
+                                      [LAM_KNOB_SHARPNESS] = "law of contact",
                                       [LAM_KNOB_CELLS] = "cells per period",
                                       [LAM_KNOB_TOLERANCE] = "Newton tolerance",
                                       [LAM_KNOB_DATABASE] = "table"};

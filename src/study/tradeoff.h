@@ -21,6 +21,7 @@
 #define LAM_KNOBS(X)                                                                                                   \
   X(LAM_KNOB_MESH, "mesh")           /* elements along a face, through a wall, grading */                              \
   X(LAM_KNOB_STRATEGY, "strategy")   /* contact reached in one step or two */                                          \
+  X(LAM_KNOB_SHARPNESS, "sharpness") /* the exact law of contact, and widths of the smooth one */                      \
   X(LAM_KNOB_CELLS, "cells")         /* per period */                                                                  \
   X(LAM_KNOB_TOLERANCE, "tolerance") /* of the Newton iterations */                                                    \
   X(LAM_KNOB_DATABASE, "database")   /* accuracy of a table */                                                         \

@@ -19,6 +19,7 @@ enum { MOST_SETTINGS = 64 };
 static const PetscInt Along[] = {4, 6, 8, 12, 16, 20}, Through[] = {1, 2, 4};
 static const PetscReal Gradings[] = {0, 0.6};
 static const PetscReal Tolerances[] = {1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 0};
+static const PetscReal Widths[] = {0.01, LAM_USUAL_WIDTH, 0.001};
 static const PetscInt Cells[][2] = {{1, 1}, {2, 1}, {2, 2}};
 static const PetscReal Accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 #define COUNT(array) ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(array))
@@ -43,7 +44,8 @@ static const char *WhyNotTable(const LamScene *scene)
 PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why)
 {
   *why = NULL;
-  if (knob == LAM_KNOB_STRATEGY && scene->micro.interface == LAM_INTERFACE_BONDED) *why = "the cells are bonded";
+  if ((knob == LAM_KNOB_STRATEGY || knob == LAM_KNOB_SHARPNESS) && scene->micro.interface == LAM_INTERFACE_BONDED)
+    *why = "the cells are bonded";
   if (knob == LAM_KNOB_CELLS) *why = WhyNotCells(&scene->micro);
   if (knob == LAM_KNOB_DATABASE) *why = WhyNotTable(scene);
   if (knob == LAM_KNOB_MACRO && !scene->has_macro) *why = "the scene has no block macro";
@@ -75,6 +77,17 @@ static PetscInt VaryMesh(LamSetting settings[])
   return n;
 }
 
+/* The exact law, then the smooth one. */
+static PetscInt VarySharpness(LamSetting settings[])
+{
+  settings[0].micro.sharpness = LAM_SHARPNESS_EXACT;
+  for (PetscInt k = 0; k < COUNT(Widths); k++) {
+    settings[k + 1].micro.sharpness = LAM_SHARPNESS_SMOOTH;
+    settings[k + 1].micro.contact_width = Widths[k];
+  }
+  return 1 + COUNT(Widths);
+}
+
 static PetscInt VaryResponse(const LamScene *scene, LamSetting settings[])
 {
   PetscInt n = 1; /* the first one: direct */
@@ -95,6 +108,8 @@ static PetscInt Vary(const LamScene *scene, LamKnob knob, LamSetting settings[])
   case LAM_KNOB_STRATEGY:
     for (int k = 0; k < LAM_STRATEGY_COUNT; k++) settings[k].strategy = (LamStrategy)k;
     return LAM_STRATEGY_COUNT;
+  case LAM_KNOB_SHARPNESS:
+    return VarySharpness(settings);
   case LAM_KNOB_CELLS:
     for (PetscInt k = 0; k < COUNT(Cells); k++)
       for (int d = 0; d < 2; d++) settings[k].micro.cells[d] = Cells[k][d];
@@ -110,14 +125,21 @@ static PetscInt Vary(const LamScene *scene, LamKnob knob, LamSetting settings[])
   }
 }
 
+/* Of the smooth law of contact; 0: the exact one. */
+static PetscReal WidthOf(const LamMicrostructure *micro)
+{
+  if (micro->sharpness != LAM_SHARPNESS_SMOOTH) return 0;
+  return micro->contact_width > 0 ? micro->contact_width : LAM_USUAL_WIDTH;
+}
+
 /* Of a body direct responses: also the reference of the others. */
 static PetscBool IsPlanned(const LamScene *scene, const LamSetting *s)
 {
   const LamMicrostructure *a = &s->micro, *b = &scene->micro;
 
   return (PetscBool)(a->along == b->along && a->through == b->through && a->grading == b->grading &&
-                     a->cells[0] == b->cells[0] && a->cells[1] == b->cells[1] && s->strategy == scene->strategy &&
-                     s->tolerance == scene->tolerance && s->accuracy == 0);
+                     a->cells[0] == b->cells[0] && a->cells[1] == b->cells[1] && WidthOf(a) == WidthOf(b) &&
+                     s->strategy == scene->strategy && s->tolerance == scene->tolerance && s->accuracy == 0);
 }
 
 static void NameMesh(LamSetting *s)
@@ -140,6 +162,11 @@ static void Name(LamSetting *s)
   } else if (s->knob == LAM_KNOB_STRATEGY) {
     snprintf(s->label, sizeof(s->label), "%s", LamStrategyNames[s->strategy]);
     snprintf(s->mark, sizeof(s->mark), "%s", s->strategy == LAM_TWO_STEP ? "two steps" : "one step");
+  } else if (s->knob == LAM_KNOB_SHARPNESS) {
+    const PetscReal width = WidthOf(&s->micro);
+
+    snprintf(s->label, sizeof(s->label), width > 0 ? "smooth, width %g" : "exact", (double)width);
+    snprintf(s->mark, sizeof(s->mark), width > 0 ? "%g" : "exact", (double)width);
   } else if (s->knob == LAM_KNOB_CELLS) {
     snprintf(s->label, sizeof(s->label), "%" PetscInt_FMT " x %" PetscInt_FMT " cells", cells[0], cells[1]);
     snprintf(s->mark, sizeof(s->mark), "%" PetscInt_FMT "x%" PetscInt_FMT, cells[0], cells[1]);

@@ -28,7 +28,7 @@ import json
 data, model = json.load(open("out/tradeoff.json")), json.load(open("out/model.json"))
 assert [json.loads(line) for line in open("one.jsonl")] and len(data["settings"]) == 36 + 7 + 3
 assert data["tissue"] == model["tissue"] and data["reference"] == model["reference"]
-assert set(data["left_out"]) == {"strategy", "database", "macro"}
+assert set(data["left_out"]) == {"strategy", "sharpness", "database", "macro"}
 for s in data["settings"]:
     t = s["core_seconds"]
     assert 0 < t["min"] <= t["median"] <= t["max"]
@@ -49,6 +49,10 @@ has out.txt "planned mesh 6 x 2" "^reference" "> tolerance *rounding" "rounding"
 # without a load: states of the sample box, or a few of its own
 grep -v -e '^load' -e '^  - ' scene.yaml >free.yaml
 expect 0 -o "7 states (default)" "$lamella" tradeoff free.yaml --budget 20 --repeats 1 --only tolerance
+
+# the law of contact
+expect 0 "$lamella" tradeoff "$source/tests/scenes/shear-contact.yaml" --budget 20 --repeats 1 --only sharpness
+has out.txt "> sharpness exact" "sharpness smooth, width 0.01" "sharpness smooth, width 0.001"
 
 # mistakes
 expect 1 "$lamella" tradeoff scene.yaml --only meshes
