@@ -178,11 +178,9 @@ static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve,
   } else {
     PetscCall(LamNewtonFast(rve, load, NULL, &outcome));
     if (outcome == LAM_NEWTON_STALLED) {
-      PetscInt shut;
-
       ProlongPositions(coarse, from, rve);
       PetscCall(ProlongStresses(coarse, rve));
-      PetscCall(LamNewtonFlow(rve, load, &outcome, &shut));
+      PetscCall(LamMinimise(rve, load, NULL, LamNewtonTolerance(rve), &outcome));
     }
   }
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);

@@ -2,11 +2,11 @@
   Equilibrium at a new load, by continuation from a known state.
 
   Method. (i) The state is rotated rigidly to the rotation of the new F and moved affinely by the rest of the change of
-  F. (ii) Fast tier, flow, then safe tier, at the full load. (iii) If all fail, the same in substeps along the straight
-  line in (F, turgor), halved on failure and doubled on success; the safe tier, which is slow if walls are stiff, is
-  used only in the smallest. (iv) A converged state with negative eigenvalues is a saddle: it is left along its unstable
-  mode, downhill, to a stable branch. (v) The reason for the end of a path is bracketed: a lumen that closes, or walls
-  that lose ellipticity, which no mesh resolves.
+  F. (ii) Full Newton steps, and if they fail minimisation of the energy (minimise.c), at the full load. (iii) If that
+  fails, the same in substeps along the straight line in (F, turgor), halved on failure and doubled on success. (iv) A
+  converged state with negative eigenvalues is a saddle: it is left along its unstable mode, downhill, to a stable
+  branch. (v) The reason for the end of a path is bracketed: a lumen that closes, or walls that lose ellipticity, which
+  no mesh resolves.
 */
 #include "contact_find.h"
 
@@ -116,30 +116,20 @@ static PetscBool IsStable(const Outcome *out)
   return (PetscBool)(out->converged && out->negative == 0 && out->collapsed < 0);
 }
 
-/*
-  One step from (from, load_from) to load_to; the solution is in rve->y. branch counts saddles left. thorough: try the
-  safe tier, which is slow if walls are stiff.
-*/
+/* One step from (from, load_from) to load_to; the solution is in rve->y. branch counts saddles left. */
 static PetscErrorCode Step(LamRVE rve, const PetscReal from[], const LamLoad *load_from, const LamLoad *load_to,
-                           PetscBool thorough, PetscInt *branch, Outcome *out)
+                           PetscInt *branch, Outcome *out)
 {
   const PetscInt escapes = rve->work.escapes;
   LamNewtonOutcome outcome;
-  PetscInt shut = -1;
 
   PetscFunctionBeginUser;
   *out = (Outcome){.collapsed = -1};
   LamMoveAffinely(rve, from, load_from, load_to);
   PetscCall(LamNewtonFast(rve, load_to, NULL, &outcome));
-  if (outcome == LAM_NEWTON_STALLED) {
-    LamMoveAffinely(rve, from, load_from, load_to);
-    PetscCall(LamNewtonFlow(rve, load_to, &outcome, &shut));
-  }
-  if (outcome == LAM_NEWTON_STALLED && thorough) LamMoveAffinely(rve, from, load_from, load_to);
-  if (outcome == LAM_NEWTON_NEAR_SADDLE || (outcome == LAM_NEWTON_STALLED && thorough))
-    PetscCall(LamMinimise(rve, load_to, NULL, LamNewtonTolerance(rve), &outcome));
+  if (outcome == LAM_NEWTON_STALLED) LamMoveAffinely(rve, from, load_from, load_to);
+  if (outcome != LAM_NEWTON_CONVERGED) PetscCall(LamMinimise(rve, load_to, NULL, LamNewtonTolerance(rve), &outcome));
   if (rve->work.escapes > escapes) ++*branch;
-  out->collapsed = shut;
   if (outcome != LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
   PetscCall(LamLeaveSaddles(rve, load_to, branch, &out->negative, &out->converged));
   if (out->converged) PetscCall(LamFindCollapsedLumen(rve, rve->y, &out->collapsed));
@@ -169,12 +159,11 @@ static PetscErrorCode Substeps(LamRVE rve, PetscReal y_from[], const LamLoad *st
   PetscFunctionBeginUser;
   LamWatchKinks(rve, start, y_from, 0.0, &path->kinking);
   while (path->between[0] < 1.0 && step >= LeastStep(path) && LamMayIterate(rve)) {
-    const PetscBool smallest = (PetscBool)(step < 2.0 * LeastStep(path));
     const PetscReal t = PetscMin(1.0, path->between[0] + step);
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(start, load, t);
     PetscInt branch = path->branch;
 
-    PetscCall(Step(rve, y_from, &at, &next, smallest, &branch, &path->end));
+    PetscCall(Step(rve, y_from, &at, &next, &branch, &path->end));
     if (IsStable(&path->end)) {
       PetscCall(PetscArraycpy(y_from, rve->y, rve->length));
       at = next;
@@ -227,7 +216,7 @@ PetscErrorCode LamFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state,
   PetscCall(PetscMalloc1(rve->length, &saddle));
   PetscCall(LamTurnedState(rve, state, load, &from));
   response->branch = state->branch;
-  PetscCall(Step(rve, from->y, &from->load, load, PETSC_TRUE, &response->branch, &out));
+  PetscCall(Step(rve, from->y, &from->load, load, &response->branch, &out));
   if (!IsStable(&out)) {
     PetscCall(PetscArraycpy(saddle, rve->y, rve->length));
     PetscCall(Substeps(rve, from->y, &from->load, load, &path));

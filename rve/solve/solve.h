@@ -1,7 +1,7 @@
 /*
   Solvers for equilibrium states of the RVE.
 
-    newton.c newton_flow.c                one bonded equilibrium from an initial guess: fast and flow tiers
+    newton.c                              one bonded equilibrium from an initial guess by full Newton steps
     minimise.c                            a minimum of the energy, with contact or without
     border.c border.h                     components of F as unknowns, for prescribed stress
     path.c                                initial guess, load substeps, escape from saddles, failure reasons
@@ -25,9 +25,6 @@ typedef enum { LAM_NEWTON_CONVERGED, LAM_NEWTON_NEAR_SADDLE, LAM_NEWTON_STALLED 
 /* Solves for equilibrium at `load`, starting from rve->y, by full Newton steps. border: NULL, or the free components of
    F; the load is then border->load. */
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome);
-/* The same for unstable initial guesses: the residual may grow. shut: the cell whose lumen closed during the iteration,
-   which ends it; -1: none. */
-PetscErrorCode LamNewtonFlow(LamRVE rve, const LamLoad *load, LamNewtonOutcome *outcome, PetscInt *shut);
 #define LAM_ROUNDING_MARGIN 1e3 /* times the tolerance: residual that rounding of large stresses may leave */
 /* Tolerance on the residual norm: the larger of 1e-11, rve->tolerance and the rounding error of the stiff forces. */
 PetscReal LamNewtonTolerance(LamRVE rve);
