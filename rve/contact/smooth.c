@@ -1,7 +1,6 @@
 #include "smooth.h"
 
-#define LEAST_H 0.05 /* of m: bounds the second variation where a wall is bent as sharply as a point lies deep in it   \
-                      */
+#define LEAST_H 0.05 /* of m: bounds d2(gap) where a wall is bent as sharply as a point lies deep in it */
 #define ROOT_STEPS 60
 
 void LamTouchLawEvaluate(PetscReal gap, PetscReal width, LamTouchLaw *law)

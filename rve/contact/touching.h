@@ -8,6 +8,7 @@
   so that a uniform pressure on a straight contour loads the nodes as one on the elements does, 1 : 4 : 1. A corner v of
   a cell has two control points: the contour is straight up to them and rounds the corner within a sixth of a span. For
   wide laws they lie at (1 - bevel) v + bevel m, with the nodes m next to it.
+
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 */
@@ -18,10 +19,8 @@
 #include "mesh.h"
 #include "smooth.h"
 
-#define LAM_SPAN_NODES 5 /* nodes, following each other, that the control points of a span depend on */
-#define LAM_TOUCH_POINTS                                                                                               \
-  6 /* per span: 3 leave a ripple in the tangent, more change little (docs/theory/contact.md)                          \
-     */
+#define LAM_SPAN_NODES 5   /* nodes, following each other, that the control points of a span depend on */
+#define LAM_TOUCH_POINTS 6 /* per span: 3 leave a ripple in the tangent, more change little */
 
 typedef struct {
   PetscReal low[2], high[2];
