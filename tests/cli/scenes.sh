@@ -24,6 +24,12 @@ small "$scenes/hexagons-turgid.yaml" >turgid.yaml
 expect 0 "$lamella" rve turgid.yaml --json
 number open_fraction | awk '!($1 < 0.05) { exit 1 }' || fail "turgid cells part: $(number open_fraction) open"
 
+# thin walls: the branch ends, and the cells go on with other neighbours
+expect 0 "$lamella" rve "$scenes/thin-snap.yaml" --no-estimate --json
+[ "$(grep -c '"status": *"converged"' out.txt)" -eq 12 ] || fail "not twelve states: $(cat out.txt)"
+grep -q '"jumped": *true' out.txt || fail "no branch ends: $(cat out.txt)"
+number third_fraction | awk '!($1 > 0.02) { exit 1 }' || fail "no third cell is met: $(number third_fraction)"
+
 # maps: from separation to rupture as turgor rises at given strain; both modes under given stress and in contact
 expect 0 "$lamella" map "$scenes/map-shear-turgor.yaml" -o shear.h5
 grep -qE '^ +0 .* S$' out.txt || fail "flaccid cells do not separate: $(cat out.txt)"
