@@ -50,8 +50,8 @@ static const LamKey tissue_keys[] = {
              "`auto`: `exact`. Only with law `contact`."},
     {LENGTH("rve.interface.width", "um"), INTO(LamScene, micro.contact_width), ABOVE(0),
      .default_words = "0.003 of the apothem", .example = "0.5 um",
-     .help = "Gap at which contact pressure has fallen to none; only with sharpness `smooth`. Tables of contact tissue "
-             "need the fewest solves at about 0.01 of the apothem; `contact_error` of a response tells its price."},
+     .help = "Gap at which contact pressure has fallen to none; only with sharpness `smooth`. `contact_error` of "
+             "a response tells its price, and `lamella tradeoff` measures it."},
     {MAP("rve.turgor"), .example = "{mode: prescribed, pressure: 0.02 MPa}", .help = "Pressure in the lumens."},
     {NAME("rve.turgor.mode", turgor_mode_names), .default_words = "`prescribed` where a pressure is given, else `none`",
      .help = "`prescribed`: the pressure is given; `sealed`: each cell keeps the water that it has at F = I under "
