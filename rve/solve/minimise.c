@@ -6,7 +6,7 @@
   shifted (inertia correction): a shift that fails is multiplied by GROWTH, one that serves is divided by DECAY for the
   next iteration. Steps are limited in length, and must lower the energy (Armijo). A full step may fail only because it
   violates the stiff constraints of the walls: it is then corrected with the same factor, and shortened if that does not
-  help. The energy never rises, so a state is found wherever it has a minimum. Near a saddle the softest mode is added,
+  help. The energy never rises, so the iteration goes down to a minimum. Near a saddle the softest mode is added,
   downhill. Once the energy no longer resolves the steps, the residual decides.
 
   With free components of F (border.h) the energy is L - V0 P.F, and the border's steps descend.
