@@ -26,6 +26,7 @@
 #define WORTH_CORRECTING 0.2 /* least share of a step that is corrected */
 #define IDLE 8               /* iterations without progress after which the last digits are reached */
 #define PROGRESS 0.5
+#define FIRM 1e-3 /* largest residual of a state that is accepted after a shifted step */
 
 typedef struct {
   LamRVE rve;
@@ -229,7 +230,9 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
     PetscCall(LamBorderAssemble(rve, border, &norm));
     idle = norm < PROGRESS * least ? 0 : idle + 1;
     least = PetscMin(least, norm);
-    if (norm <= tolerance && (it > 0 || !rve->moved)) *outcome = LAM_NEWTON_CONVERGED;
+    /* where the matrix was shifted a minimum is not near, and its soft modes are not at rest */
+    if (norm <= (d.shift > LAM_PROXIMAL ? PetscMin(tolerance, FIRM) : tolerance) && (it > 0 || !rve->moved))
+      *outcome = LAM_NEWTON_CONVERGED;
     if (*outcome == LAM_NEWTON_CONVERGED) break;
     PetscCall(FactorConvex(&d, &ok));
     if (!ok) break;
