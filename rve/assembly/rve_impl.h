@@ -280,10 +280,9 @@ static inline PetscBool LamMayIterate(LamRVE rve)
   return (PetscBool)(rve->work.iterations < rve->budget && !rve->work.stopped);
 }
 
-/* Marks the factorisation and the assembled values as outdated. */
-static inline void LamForgetFactor(LamRVE rve)
+/* Marks the assembled values as outdated. */
+static inline void LamForgetTangent(LamRVE rve)
 {
-  rve->linear->rate = PETSC_INFINITY;
   rve->consistent = PETSC_FALSE;
 }
 
@@ -295,10 +294,7 @@ static inline PetscReal LamBendingStiffness(LamRVE rve)
 }
 
 /* ---- stability.c ---- */
-#define LAM_ZERO_MODE                                                                                                  \
-  1e-9                     /* eigenvalues (of modes of unit length) up to this absolute value count as zero; C1 + C2   \
-                            */
-#define LAM_NEAR_RATE 1e-3 /* largest rate of a factor that is used beyond its own iteration */
+#define LAM_ZERO_MODE 1e-9 /* eigenvalues of modes of unit length that count as zero, C1 + C2 */
 /* Number of negative eigenvalues of the matrix at a stable state: one for each active multiplier and sealed lumen. */
 PetscInt LamExpectedNegative(LamRVE rve);
 /* Assembles and factors the consistent tangent at rve->y and counts its negative eigenvalues beyond the expected ones.

@@ -211,7 +211,7 @@ static void Use(LamRVE rve, PetscInt system)
 {
   rve->linear = &rve->systems[system];
   LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
 }
 
 PetscErrorCode LamSmoothCreate(LamRVE rve)

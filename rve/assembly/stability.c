@@ -69,12 +69,6 @@ PetscErrorCode LamFactorConsistent(LamRVE rve, const LamLoad *load, PetscInt *ne
     LamContactAddCurvature(rve);
     LamContactSetRows(rve);
   }
-  if (rve->linear->rate <= LAM_NEAR_RATE) {
-    /* eigenvalues of K0^-1 K are within `rate` of 1, so K has the inertia of the factored matrix K0 */
-    rve->linear->nearby = PETSC_TRUE;
-    rve->linear->rate = PETSC_INFINITY;
-    PetscFunctionReturn(0);
-  }
   PetscCall(FactorShifted(rve, 0.0, negative, ok));
   if (rve->contact) PetscCall(CountZeroModes(rve, negative, ok));
   PetscFunctionReturn(0);
@@ -130,7 +124,7 @@ PetscErrorCode LamImproveSoftestMode(LamRVE rve, PetscInt iterations, PetscReal 
 
     PetscCall(PetscArrayzero(mode + pressures,
                              rve->linear->lumens)); /* the pressures of the solution follow from its positions */
-    PetscCall(LamLinearSolveOnce(rve->linear, 1, mode, next));
+    PetscCall(LamLinearSolve(rve->linear, 1, mode, next));
     PetscCall(PetscArraycpy(mode, next, positions));
     norm = PetscSqrtReal(LamInnerProduct(positions, mode, mode));
     for (PetscInt i = 0; i < positions; ++i) mode[i] /= norm;

@@ -2,14 +2,14 @@
   MUMPS LDL^T with one symbolic analysis for the lifetime of the object; values change in place. MUMPS pivots, so
   indefinite matrices are safe, and it counts negative eigenvalues (Sylvester's law of inertia).
 
-  Small systems expected to be positive definite are first tried without pivoting (cholesky.h).
+  Small systems are first tried without pivoting (ldl.h).
 
   With several ranks, rank 0 announces every collective call: it broadcasts an order (operation, matrix number, size),
   and all ranks make the same calls. In the distributed matrix rank 0 owns all rows; MUMPS distributes the fronts
   itself. Waiting ranks sleep between polls.
 */
 #include "factor.h"
-#include "cholesky.h"
+#include "ldl.h"
 #include <lamella/rve.h>
 #include <time.h>
 
@@ -24,9 +24,9 @@ struct LamFactor_s {
   PetscInt n, nonzeros;
   PetscInt *row, *column; /* borrowed, on rank 0 */
   PetscReal *values;
-  PetscInt margin;      /* workspace margin of MUMPS, per cent; the same on all ranks */
-  LamCholesky cholesky; /* tried first; NULL: not small, or not expected to be definite */
-  PetscBool definite;   /* `cholesky` holds the present factor */
+  PetscInt margin;     /* workspace margin of MUMPS, per cent; the same on all ranks */
+  LamLDL ldl;          /* tried first; NULL: not small */
+  PetscBool unpivoted; /* `ldl` holds the present factor */
   Mat matrix, factor;
   Vec rhs, solution; /* placeholders for the callers' arrays */
 };
@@ -146,7 +146,7 @@ static PetscErrorCode Solve(LamFactor f, const PetscReal rhs[], PetscReal soluti
 static PetscErrorCode Free(LamFactor f)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamCholeskyDestroy(&f->cholesky));
+  PetscCall(LamLDLDestroy(&f->ldl));
   PetscCall(MatDestroy(&f->factor));
   PetscCall(MatDestroy(&f->matrix));
   PetscCall(VecDestroy(&f->rhs));
@@ -159,7 +159,7 @@ static PetscErrorCode Free(LamFactor f)
 /* ---- rank 0 ---- */
 
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
-                               PetscBool definite, LamFactor *factor)
+                               PetscInt positions, LamFactor *factor)
 {
   LamFactor f;
 
@@ -181,9 +181,21 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
   }
   PetscCall(Announce(f, ORDER_CREATE));
   PetscCall(CreateMatrix(f));
-  if (definite && f->size == 1 && n <= LAM_CHOLESKY_LARGEST)
-    PetscCall(LamCholeskyCreate(n, row, column, values, &f->cholesky));
+  if (f->size == 1 && n <= LAM_LDL_LARGEST) PetscCall(LamLDLCreate(n, positions, row, column, values, &f->ldl));
   *factor = f;
+  PetscFunctionReturn(0);
+}
+
+/* Tries the factorisation without pivoting. *done: there is a factor, or more than `most` eigenvalues are negative. */
+static PetscErrorCode TryUnpivoted(LamFactor f, PetscInt most, PetscInt *negative, PetscBool *done)
+{
+  PetscBool unsure;
+
+  PetscFunctionBeginUser;
+  f->unpivoted = *done = PETSC_FALSE;
+  if (!f->ldl) PetscFunctionReturn(0);
+  PetscCall(LamLDLNumeric(f->ldl, most, negative, &f->unpivoted, &unsure));
+  *done = (PetscBool)(f->unpivoted || (*negative > most && !unsure));
   PetscFunctionReturn(0);
 }
 
@@ -194,10 +206,8 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
 
   PetscFunctionBeginUser;
   *negative = 0;
-  *ok = PETSC_TRUE;
-  factor->definite = PETSC_FALSE;
-  if (factor->cholesky) PetscCall(LamCholeskyNumeric(factor->cholesky, &factor->definite));
-  if (factor->definite) PetscFunctionReturn(0);
+  PetscCall(TryUnpivoted(factor, factor->n, negative, ok));
+  if (*ok) PetscFunctionReturn(0);
   PetscCall(Announce(factor, ORDER_NUMERIC));
   if (factor->size > 1) PetscCall(MatGetDiagonalBlock(factor->matrix, &rows));
   PetscCall(MatSeqSBAIJGetArray(rows, &array));
@@ -210,14 +220,12 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
 PetscErrorCode LamFactorExpected(LamFactor factor, PetscInt expected, PetscBool *ok)
 {
   PetscInt negative;
+  PetscBool done;
 
   PetscFunctionBeginUser;
-  if (factor->cholesky && expected == 0) {
-    PetscCall(LamCholeskyNumeric(factor->cholesky, &factor->definite));
-    *ok = factor->definite;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(LamFactorNumeric(factor, &negative, ok));
+  PetscCall(TryUnpivoted(factor, expected, &negative, &done));
+  *ok = PETSC_TRUE;
+  if (!done) PetscCall(LamFactorNumeric(factor, &negative, ok));
   *ok = (PetscBool)(*ok && negative == expected);
   PetscFunctionReturn(0);
 }
@@ -227,8 +235,8 @@ PetscErrorCode LamFactorSolve(LamFactor factor, PetscInt count, const PetscReal 
   Mat B, X;
 
   PetscFunctionBeginUser;
-  if (factor->definite) {
-    PetscCall(LamCholeskySolve(factor->cholesky, count, rhs, solution));
+  if (factor->unpivoted) {
+    PetscCall(LamLDLSolve(factor->ldl, count, rhs, solution));
     PetscFunctionReturn(0);
   }
   if (count == 1 || factor->size > 1) {

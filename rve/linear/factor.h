@@ -10,11 +10,11 @@
 
 typedef struct LamFactor_s *LamFactor;
 
-/* Upper triangle in compressed rows: row [n+1], column and values [row[n]] are borrowed. definite: the matrix is
-   expected to be positive definite; small ones are then first tried without pivoting (cholesky.h). Called on rank 0
-   only. */
+/* Upper triangle in compressed rows: row [n+1], column and values [row[n]] are borrowed. positions: unknowns that come
+   first, whose part of the matrix is expected to be positive definite. Small matrices are first tried without pivoting
+   (ldl.h). Called on rank 0 only. */
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
-                               PetscBool definite, LamFactor *factor);
+                               PetscInt positions, LamFactor *factor);
 /* Factors the present values. *ok is PETSC_FALSE if the matrix is singular to working precision. *negative: number of
    negative eigenvalues. */
 PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok);

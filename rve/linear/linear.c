@@ -3,11 +3,6 @@
 */
 #include "linear.h"
 
-#define RESTS 1e-9      /* largest residual of a solve with a nearby factor, over the largest right-hand side entry */
-#define LEFT_OUT 1e-10  /* largest rest.K^-1 rest, in C1 + C2: an error of the tangent */
-#define LEAST_FALL 1e-3 /* lower bound of the assumed reduction of that work per refinement */
-#define POOR 0.1        /* largest residual reduction of a useful refinement; above it the matrix is factored again */
-
 /*
   Coupled pairs of groups of unknowns, sorted keys a * groups + b with a <= b. Groups are the classes, with two
   positions each, the couplings, with their multipliers, and the lumens, with one pressure. Class 0 is prescribed: no
@@ -138,7 +133,6 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(linear, sizeof(*linear)));
   if (!couplings) couplings = &none;
-  linear->rate = PETSC_INFINITY;
   linear->positions = 2 * (mesh->class_count - 1);
   linear->pressures = linear->positions + couplings->count * couplings->multipliers;
   linear->lumens = lumens;
@@ -166,8 +160,8 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
 PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamFactorCreate(comm, linear->n, linear->row, linear->column, linear->values,
-                            (PetscBool)(linear->positions == linear->n), &linear->factor));
+  PetscCall(LamFactorCreate(comm, linear->n, linear->row, linear->column, linear->values, linear->positions,
+                            &linear->factor));
   PetscFunctionReturn(0);
 }
 
@@ -182,11 +176,8 @@ PetscErrorCode LamLinearDestroy(LamLinear *linear)
   PetscFunctionReturn(0);
 }
 
-/* Call before and after a factorisation. */
 static void Shift(LamLinear *linear, PetscReal shift)
 {
-  linear->nearby = PETSC_FALSE;
-  linear->rate = PETSC_INFINITY;
   for (PetscInt i = 0; i < linear->positions && shift != 0.0; ++i) linear->values[linear->row[i]] += shift;
 }
 
@@ -195,7 +186,6 @@ PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *neg
   PetscFunctionBeginUser;
   Shift(linear, shift);
   PetscCall(LamFactorNumeric(linear->factor, negative, ok));
-  linear->negative = *negative;
   Shift(linear, -shift);
   PetscFunctionReturn(0);
 }
@@ -205,69 +195,14 @@ PetscErrorCode LamLinearFactorExpected(LamLinear *linear, PetscReal shift, Petsc
   PetscFunctionBeginUser;
   Shift(linear, shift);
   PetscCall(LamFactorExpected(linear->factor, expected, ok));
-  linear->negative = expected;
   Shift(linear, -shift);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLinearSolveOnce(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[])
+PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
   PetscFunctionBeginUser;
   PetscCall(LamFactorSolve(linear->factor, count, rhs, solution));
-  PetscFunctionReturn(0);
-}
-
-/* rest := b - K x. */
-static void FindRest(const LamLinear *linear, PetscInt count, const PetscReal rhs[], const PetscReal solution[],
-                     PetscReal rest[])
-{
-  for (PetscInt k = 0; k < count; ++k) LamLinearMultiply(linear, solution + k * linear->n, rest + k * linear->n);
-  for (PetscInt i = 0; i < count * linear->n; ++i) rest[i] = rhs[i] - rest[i];
-}
-
-/* Largest of rest.change of the right-hand sides. */
-static PetscReal LargestWork(PetscInt count, PetscInt n, const PetscReal rest[], const PetscReal change[])
-{
-  PetscReal largest = 0.0;
-
-  for (PetscInt k = 0; k < count; ++k)
-    largest = PetscMax(largest, PetscAbsReal(LamInnerProduct(n, rest + k * n, change + k * n)));
-  return largest;
-}
-
-/* A residual that is small relative to stiff forces may still move soft walls, so its work is limited, too. The work is
-   known for the previous residual. The present one is estimated by the last reduction factor, but not below LEAST_FALL,
-   since the work in soft modes decreases more slowly. */
-PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
-                              PetscReal rest[])
-{
-  const PetscInt length = count * linear->n;
-  const PetscReal enough = RESTS * LamLargestEntry(length, rhs);
-  PetscReal *change, before = PETSC_INFINITY, left, work = PETSC_INFINITY, fall = 1.0;
-  PetscBool ok = PETSC_TRUE;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
-  PetscCall(PetscArrayzero(rest, length));
-  if (!linear->nearby) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(length, &change));
-  for (;;) {
-    FindRest(linear, count, rhs, solution, rest);
-    left = LamLargestEntry(length, rest);
-    if ((left <= enough && work * fall <= LEFT_OUT) || !(left <= POOR * before)) break;
-    before = left;
-    PetscCall(LamLinearSolveOnce(linear, count, rest, change));
-    fall = 1.0 / work;
-    work = LargestWork(count, linear->n, rest, change);
-    fall = fall > 0.0 ? PetscMax(LEAST_FALL, PetscMin(1.0, fall * work)) : 1.0;
-    for (PetscInt i = 0; i < length; ++i) solution[i] += change[i];
-  }
-  PetscCall(PetscFree(change));
-  if (left <= enough && work * fall <= LEFT_OUT) PetscFunctionReturn(0);
-  PetscCall(LamLinearFactor(linear, 0.0, &linear->negative, &ok));
-  PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_MAT_LU_ZRPVT, "the tangent of a converged state is singular");
-  PetscCall(LamLinearSolveOnce(linear, count, rhs, solution));
-  PetscCall(PetscArrayzero(rest, length));
   PetscFunctionReturn(0);
 }
 

@@ -31,10 +31,6 @@ typedef struct {
   PetscReal *values;      /* [nonzeros] */
   PetscInt *position;     /* [element][LAM_PAIRS] index into values, -1: prescribed; element dofs i <= j, row by row */
   LamFactor factor;       /* owned */
-  PetscInt negative;      /* number of negative eigenvalues of the matrix last factored */
-  PetscReal rate; /* distance of the factor from the matrix at the present positions: roughly the ratio by which a step
-                     with it reduces the residual; infinite: unknown */
-  PetscBool nearby; /* the factor is that of a nearby matrix, not of `values`: solves refine */
 } LamLinear;
 
 /* couplings: NULL for none; lumens: number of cells, or 0 if they cannot be sealed. */
@@ -55,11 +51,7 @@ PetscErrorCode LamLinearFactor(LamLinear *linear, PetscReal shift, PetscInt *neg
    factor. Cheaper than LamLinearFactor where it has not. */
 PetscErrorCode LamLinearFactorExpected(LamLinear *linear, PetscReal shift, PetscInt expected, PetscBool *ok);
 /* solution = K^-1 rhs with the last factor, arrays of length n; count right-hand sides, one after the other. */
-PetscErrorCode LamLinearSolveOnce(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
-/* As LamLinearSolveOnce, for a factor that may be of a nearby matrix: refines until rest = rhs - K solution is small,
-   or factors again. */
-PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[],
-                              PetscReal rest[]);
+PetscErrorCode LamLinearSolve(LamLinear *linear, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 void LamLinearMultiply(const LamLinear *linear, const PetscReal x[], PetscReal y[]);
 
 static inline PetscReal LamLargestEntry(PetscInt n, const PetscReal v[])

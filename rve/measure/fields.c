@@ -90,7 +90,7 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
 
   PetscFunctionBeginUser;
   *eigenvalue = NAN;
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   PetscCall(LamTakeState(rve, state));
   PetscCall(PetscCalloc1(rve->linear->n, &unknowns));

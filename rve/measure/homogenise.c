@@ -262,42 +262,41 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
 static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
 {
   const PetscInt n = rve->linear->n;
-  PetscReal *r, *step, *rest, *R;
+  PetscReal *r, *step, *R;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n, &r, n, &step, n, &rest, n, &R));
+  PetscCall(PetscMalloc3(n, &r, n, &step, n, &R));
   CopyResidual(rve, r);
-  PetscCall(LamLinearSolve(rve->linear, 1, r, step, rest));
+  PetscCall(LamLinearSolve(rve->linear, 1, r, step));
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
     LamCopyActive(rve, c->R + q * c->size + 2, R);
     c->Lq[q] -= LamInnerProduct(n, R, step);
   }
-  PetscCall(PetscFree4(r, step, rest, R));
+  PetscCall(PetscFree3(r, step, R));
   PetscFunctionReturn(0);
 }
 
-/* H = (L_qq - R^T K^-1 R) / V0. With X = K^-1 (R - rest) it is (L_qq - R^T X - X^T rest -
-   rest^T K^-1 rest) / V0, whose last term is neglected: it is of second order in the error of the solve. */
+/* H = (L_qq - R^T K^-1 R) / V0. */
 static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear->n, nq = c->nq;
-  PetscReal *R, *X, *rest;
+  PetscReal *R, *X;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(nq * n, &R, nq * n, &X, nq * n, &rest));
+  PetscCall(PetscMalloc2(nq * n, &R, nq * n, &X));
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
-  PetscCall(LamLinearSolve(rve->linear, nq, R, X, rest));
+  PetscCall(LamLinearSolve(rve->linear, nq, R, X));
   for (PetscInt q = 0; q < nq; ++q)
     for (PetscInt r = q; r < nq; ++r) {
       PetscReal a = 0.0, b = 0.0;
 
       for (PetscInt i = 0; i < n; ++i) {
-        a += (R[q * n + i] + rest[q * n + i]) * X[r * n + i];
-        b += (R[r * n + i] + rest[r * n + i]) * X[q * n + i];
+        a += R[q * n + i] * X[r * n + i];
+        b += R[r * n + i] * X[q * n + i];
       }
       H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
     }
-  PetscCall(PetscFree3(R, X, rest));
+  PetscCall(PetscFree2(R, X));
   PetscFunctionReturn(0);
 }
 

@@ -76,13 +76,13 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
 
   PetscFunctionBeginUser;
   if (!border) {
-    PetscCall(LamLinearSolveOnce(rve->linear, 1, rhs, solution));
+    PetscCall(LamLinearSolve(rve->linear, 1, rhs, solution));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscArraycpy(border->rhs, rhs, n));
   for (PetscInt k = 0; k < border->count; ++k)
     LamCopyActive(rve, border->R + border->q[k] * n, border->rhs + (k + 1) * n);
-  PetscCall(LamLinearSolveOnce(rve->linear, border->count + 1, border->rhs, border->solution));
+  PetscCall(LamLinearSolve(rve->linear, border->count + 1, border->rhs, border->solution));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal *R = border->rhs + (k + 1) * n;
 

@@ -217,7 +217,7 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   PetscCall(Create(rve, load, border, &d));
   for (PetscInt it = 0; it < ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal norm, alpha;

@@ -38,15 +38,6 @@ PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iterat
   PetscFunctionReturn(0);
 }
 
-/*
-  Whether a step with the previous factorisation is expected to reach the tolerance. A Newton step leaves half the
-  second-order term of the residual; another step with the same factor leaves about twice that share (linear.rate).
-*/
-static PetscBool FactorServes(LamRVE rve, PetscReal norm, PetscReal tolerance)
-{
-  return (PetscBool)(rve->linear->rate <= LAM_NEAR_RATE && rve->linear->rate * norm <= tolerance);
-}
-
 PetscErrorCode LamSolveStep(LamRVE rve, LamBorder *border)
 {
   PetscFunctionBeginUser;
@@ -110,33 +101,19 @@ void LamTakeStep(LamRVE rve, const LamLoad *load, LamBorder *border, PetscReal a
   ++rve->work.iterations;
 }
 
-/* Updates linear.rate, the distance of the factor from the current matrix, after full steps with it; infinite (unknown)
-   if the step was shortened, the matrix shifted or the system bordered. */
-static void WatchFactor(LamRVE rve, const LamBorder *border, PetscReal shift, PetscReal alpha, PetscReal norm,
-                        PetscReal previous, PetscBool fresh)
-{
-  const PetscReal rate = 2.0 * norm / previous;
-
-  if (border || shift != 0.0 || alpha != 1.0)
-    rve->linear->rate = PETSC_INFINITY;
-  else
-    rve->linear->rate = fresh ? rate : PetscMax(rate, rve->linear->rate);
-}
-
 PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border, LamNewtonOutcome *outcome)
 {
   const PetscReal tolerance = LamNewtonTolerance(rve);
-  PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0, alpha = 0.0, largest = PETSC_INFINITY;
-  PetscBool fresh = PETSC_FALSE; /* the last step used a new factorisation */
-  PetscBool last = PETSC_FALSE;  /* the last step is expected to have converged */
+  PetscReal first = 0.0, previous = PETSC_INFINITY, shift = 0.0;
+  PetscBool last = PETSC_FALSE; /* the last step is expected to have converged */
   PetscInt growth = 0;
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   for (PetscInt it = 0; it <= FAST_ITERATIONS && !rve->work.stopped; ++it) {
-    PetscReal energy, norm;
-    PetscBool valid, ok = PETSC_TRUE;
+    PetscReal energy, norm, largest, alpha;
+    PetscBool valid, ok;
 
     if (last) last = LamSetConsistentStresses(rve, load, rve->y);
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, &valid));
@@ -144,10 +121,7 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     norm = LamResidualNorm(rve, rve->residual);
     PetscCall(LamBorderAssemble(rve, border, &norm));
     if (it == 0) first = norm;
-    if (it > 0) WatchFactor(rve, border, shift, alpha, norm, previous, fresh);
-    /* an affinely moved initial guess does not count as converged; rate * largest estimates the next step */
-    if ((norm <= tolerance && (it > 0 || !rve->moved)) ||
-        LamAtRounding(rve, norm, tolerance, rve->linear->rate * largest)) {
+    if (norm <= tolerance && (it > 0 || !rve->moved)) { /* an affinely moved initial guess does not count */
       PetscCall(LamReportIteration(rve, "fast", it, norm, 0.0, 0.0));
       *outcome = LAM_NEWTON_CONVERGED;
       rve->consistent = last;
@@ -159,9 +133,8 @@ PetscErrorCode LamNewtonFast(LamRVE rve, const LamLoad *load, LamBorder *border,
     previous = norm;
     /* the residual may grow for a few steps while the stiff constraints are violated */
     if (it == FAST_ITERATIONS || growth >= 4 || !(norm < 1e8 * (1.0 + first))) break;
-    fresh = (PetscBool)!FactorServes(rve, norm, tolerance);
     if (it == 0 || border) last = PETSC_FALSE;
-    if (fresh) PetscCall(LamFactorPositive(rve, PETSC_INFINITY, &shift, &ok));
+    PetscCall(LamFactorPositive(rve, PETSC_INFINITY, &shift, &ok));
     if (!ok) break;
     PetscCall(LamSolveStep(rve, border));
     largest = LamBorderReach(rve, border, rve->step + 2);

@@ -84,7 +84,7 @@ PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
     CopyModuli(LamCellWall(micro, cell), &rve->micro.cell[cell].wall);
   PetscCall(SetUpWalls(rve));
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   rve->changes++;
   if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
   PetscFunctionReturn(0);
@@ -224,9 +224,6 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   PetscFunctionBeginUser;
   if (rve->contact) PetscCall(FillContact(rve, load, response));
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
-  /* the factorisation assumed to be of a nearby matrix was not */
-  if (!rve->contact && response->status == LAM_CONVERGED && rve->linear->negative > LamExpectedNegative(rve))
-    PetscCall(LamRefuse(response, LAM_UNSTABLE, "the state is a saddle"));
   if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
   if (rve->contact) {
@@ -276,7 +273,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   response->distance = 0.0;
   rve->work = (LamWork){0};
   rve->lowest_eigenvalue = NAN;
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   LamTakeJunctions(rve, state);
   PetscFunctionReturn(0);

@@ -154,7 +154,7 @@ PetscErrorCode LamSharpen(LamRVE rve, const LamLoad *load, LamBorder *border, Pe
 
   PetscFunctionBeginUser;
   *outcome = LAM_NEWTON_STALLED;
-  LamForgetFactor(rve);
+  LamForgetTangent(rve);
   PetscCall(PetscMalloc4(n + 2, &step.rhs, n, &step.solution, rve->contact->count, &step.lambda, n, &step.image));
   for (PetscInt it = 0; it <= ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal energy, norm, gap, largest, alpha;

@@ -29,7 +29,7 @@ static PetscErrorCode TimeParts(LamRVE rve, const LamLoad *load, Times *median)
     PetscCall(PetscTime(&a[1]));
     PetscCall(LamLinearFactor(rve->linear, 0.0, &negative, &ok));
     PetscCall(PetscTime(&a[2]));
-    PetscCall(LamLinearSolveOnce(rve->linear, 1, rve->residual + 2, rve->step + 2));
+    PetscCall(LamLinearSolve(rve->linear, 1, rve->residual + 2, rve->step + 2));
     PetscCall(PetscTime(&a[3]));
     PetscCall(LamResponseInit(load, &response));
     PetscCall(LamHomogenise(rve, load, &response));

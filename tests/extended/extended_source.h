@@ -63,7 +63,7 @@ static struct LamRVE_s *tissue;
 static const ExtendedStart *started;
 
 PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscInt column[], PetscReal values[],
-                               PetscBool definite, LamFactor *factor)
+                               PetscInt positions, LamFactor *factor)
 {
   *factor = NULL;
   return 0;

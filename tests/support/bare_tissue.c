@@ -78,7 +78,7 @@ static PetscErrorCode BareStep(LamRVE rve, const LamLoad *load, PetscBool *ok)
   PetscFunctionBeginUser;
   PetscCall(LamLinearFactor(rve->linear, 0, &negative, ok));
   *ok = (PetscBool)(*ok && negative == 0);
-  PetscCall(LamLinearSolveOnce(rve->linear, 1, rve->residual + 2, rve->step + 2));
+  PetscCall(LamLinearSolve(rve->linear, 1, rve->residual + 2, rve->step + 2));
   for (PetscInt i = 2; i < rve->ndof; i++) rve->step[i] = -rve->step[i];
   LamUpdateStresses(rve, load, rve->y, rve->step, still, 1);
   for (PetscInt i = 0; i < rve->ndof; i++) rve->y[i] += rve->step[i];
@@ -142,7 +142,7 @@ PetscErrorCode BareSolve(LamRVE rve, const LamLoad *load, LamResponse *response)
   ok = LamSetConsistentStresses(rve, load, rve->y);
   BareAssemble(rve, load);
   PetscCall(LamLinearFactor(rve->linear, 0, &negative, &ok));
-  PetscCall(LamLinearSolveOnce(rve->linear, 1, rve->residual + 2, rve->step + 2));
+  PetscCall(LamLinearSolve(rve->linear, 1, rve->residual + 2, rve->step + 2));
   BareStress(rve, load, response->P);
   response->status = ok && negative == 0 ? LAM_CONVERGED : LAM_UNSTABLE;
   response->newton_iterations = iteration;

@@ -3,7 +3,7 @@
 
 static int DigitsSolve(void *ctx, const double rhs[], double solution[])
 {
-  return (int)LamLinearSolveOnce(((LamRVE)ctx)->linear, 1, rhs, solution);
+  return (int)LamLinearSolve(((LamRVE)ctx)->linear, 1, rhs, solution);
 }
 
 static ExtendedCase DigitsCase(const LamMicrostructure *micro, const LamLoad *load)
@@ -54,7 +54,6 @@ static PetscErrorCode DigitsCompare(LamRVE rve, const LamResponse *response, Lam
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(state->multipliers, &active));
   for (PetscInt h = 0; h < state->multipliers; ++h) active[h] = rve->contact->active[h];
-  rve->linear->rate = PETSC_INFINITY;
   PetscCall(LamFactorConsistent(rve, load, &negative, &ok));
   PetscCall((PetscErrorCode)solve(
       &c, &(ExtendedStart){state->y, state->lambda, (const int(*)[2])state->hats, active, DigitsSolve, rve},
