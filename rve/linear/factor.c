@@ -25,7 +25,7 @@ struct LamFactor_s {
   PetscInt *row, *column; /* borrowed, on rank 0 */
   PetscReal *values;
   PetscInt margin;     /* workspace margin of MUMPS, per cent; the same on all ranks */
-  LamLDL ldl;          /* tried first; NULL: not small */
+  LamLDL ldl;          /* tried first; NULL: too large */
   PetscBool unpivoted; /* `ldl` holds the present factor */
   Mat matrix, factor;
   Vec rhs, solution; /* placeholders for the callers' arrays */
@@ -181,7 +181,7 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
   }
   PetscCall(Announce(f, ORDER_CREATE));
   PetscCall(CreateMatrix(f));
-  if (f->size == 1 && n <= LAM_LDL_LARGEST) PetscCall(LamLDLCreate(n, positions, row, column, values, &f->ldl));
+  if (f->size == 1) PetscCall(LamLDLCreate(n, positions, row, column, values, &f->ldl));
   *factor = f;
   PetscFunctionReturn(0);
 }

@@ -15,8 +15,11 @@
 #include <petscmat.h>
 
 #define MOST_GROWTH                                                                                                    \
-  1e4           /* largest sum of |L| |D| |L|^T over the largest entry of K: rounding errors are this times eps */
-#define LANES 4 /* right-hand sides at a time */
+  1e4 /* largest sum of |L| |D| |L|^T over the largest entry of K: rounding errors are this times eps */
+#define MOST_PRODUCTS                                                                                                  \
+  10000000                 /* of blocks; their places take 20 MB. With more MUMPS is as fast and needs less memory */
+#define LEAST_PER_BLOCK 50 /* products to expect of each block of unknowns: from 70 on one mesh to 1000 on patches */
+#define LANES 4            /* right-hand sides at a time */
 
 typedef double Four __attribute__((vector_size(32))); /* a 2 x 2 block by columns; right-hand sides */
 typedef long Mask __attribute__((vector_size(32)));
@@ -80,8 +83,8 @@ static PetscErrorCode FindPairs(PetscInt n, PetscInt blocks, const PetscInt row[
   PetscFunctionReturn(0);
 }
 
-/* Orders the blocks before `last` by approximate minimum degree, the others after them. */
-static PetscErrorCode Order(LamLDL ldl, PetscInt last, PetscInt count, const PetscInt64 key[])
+/* Orders the blocks of positions, which are those before `last`, by approximate minimum degree. */
+static PetscErrorCode OrderPositions(LamLDL ldl, PetscInt last, PetscInt count, const PetscInt64 key[])
 {
   const PetscInt blocks = ldl->blocks;
   PetscInt *row, *column, pairs = 0;
@@ -103,7 +106,6 @@ static PetscErrorCode Order(LamLDL ldl, PetscInt last, PetscInt count, const Pet
   PetscCall(MatGetOrdering(graph, "amd", &order, &same));
   PetscCall(ISGetIndices(order, &old));
   for (PetscInt i = 0; i < last; ++i) ldl->place[old[i]] = i;
-  for (PetscInt i = last; i < blocks; ++i) ldl->place[i] = i;
   PetscCall(ISRestoreIndices(order, &old));
   PetscCall(ISDestroy(&order));
   PetscCall(ISDestroy(&same));
@@ -112,11 +114,31 @@ static PetscErrorCode Order(LamLDL ldl, PetscInt last, PetscInt count, const Pet
   PetscFunctionReturn(0);
 }
 
-/* Rows of the columns of L: those of K, and those of each column whose first row below the diagonal is this one. */
-static PetscErrorCode FindFill(LamLDL ldl, PetscInt count, const PetscInt64 key[])
+/* Inserts each of the other blocks right after the last position that it is coupled with. */
+static PetscErrorCode InsertOthers(LamLDL ldl, PetscInt last, PetscInt count, const PetscInt64 key[])
 {
   const PetscInt blocks = ldl->blocks;
-  PetscInt *first, *head, *next, *mark, size = 0, room = 8 * count;
+  PetscInt *after, *before; /* [blocks] positions before a block; [last+1] blocks before that many positions */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(blocks, &after, last + 1, &before));
+  for (PetscInt k = 0; k < count; ++k)
+    if (key[k] % blocks >= last && key[k] / blocks < last)
+      after[key[k] % blocks] = PetscMax(after[key[k] % blocks], ldl->place[key[k] / blocks] + 1);
+  for (PetscInt i = last; i < blocks; ++i) ++before[after[i]];
+  for (PetscInt i = 1; i <= last; ++i) before[i] += before[i - 1];
+  for (PetscInt i = blocks - 1; i >= last; --i) ldl->place[i] = after[i] + --before[after[i]];
+  for (PetscInt i = 0; i < last; ++i) ldl->place[i] += before[ldl->place[i] + 1];
+  PetscCall(PetscFree2(after, before));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of the columns of L: those of K, and those of each column whose first row below the diagonal is this one.
+ *products: of blocks, that the factorisation needs; ends as soon as they are too many. */
+static PetscErrorCode FindFill(LamLDL ldl, PetscInt count, const PetscInt64 key[], PetscInt *products)
+{
+  const PetscInt blocks = ldl->blocks;
+  PetscInt *first, *head, *next, *mark, size = 0, room = 8 * count, rows;
 
   PetscFunctionBeginUser;
   /* first, next: lists of the neighbours after each block in the order; head: of the columns that end in a row */
@@ -129,7 +151,8 @@ static PetscErrorCode FindFill(LamLDL ldl, PetscInt count, const PetscInt64 key[
     first[i] = k;
   }
   PetscCall(PetscMalloc1(room, &ldl->index));
-  for (PetscInt j = 0; j < blocks; ++j) {
+  *products = 0;
+  for (PetscInt j = 0; j < blocks && *products <= MOST_PRODUCTS; ++j) {
     const PetscInt begin = size;
 
     ldl->start[j] = begin;
@@ -153,6 +176,8 @@ static PetscErrorCode FindFill(LamLDL ldl, PetscInt count, const PetscInt64 key[
         }
     PetscCall(PetscSortInt(size - begin, &ldl->index[begin]));
     ldl->start[j + 1] = size;
+    rows = size - begin;
+    *products += rows * (rows - 1) / 2;
     if (size > begin + 1) { /* `source` holds the lists until it is filled */
       ldl->source[j] = head[ldl->index[begin + 1]];
       head[ldl->index[begin + 1]] = j;
@@ -163,20 +188,17 @@ static PetscErrorCode FindFill(LamLDL ldl, PetscInt count, const PetscInt64 key[
 }
 
 /* Lists the sources of all columns, and the places of their blocks. */
-static PetscErrorCode FindTargets(LamLDL ldl)
+static PetscErrorCode FindTargets(LamLDL ldl, PetscInt products)
 {
   const PetscInt blocks = ldl->blocks, *start = ldl->start, *index = ldl->index;
-  PetscInt *place, *at, products = 0, end = 0;
+  PetscInt *place, *at, end = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(blocks, &place, blocks + 1, &at));
   PetscCall(PetscArrayzero(at, blocks + 1));
   PetscCall(PetscMalloc2(start[blocks], &ldl->owner, start[blocks], &ldl->from));
   for (PetscInt i = 0; i < blocks; ++i)
-    for (PetscInt k = start[i] + 1; k < start[i + 1]; ++k) {
-      ++at[index[k] + 1];
-      products += start[i + 1] - k;
-    }
+    for (PetscInt k = start[i] + 1; k < start[i + 1]; ++k) ++at[index[k] + 1];
   for (PetscInt j = 0; j < blocks; ++j) at[j + 1] += at[j];
   PetscCall(PetscArraycpy(ldl->source, at, blocks + 1));
   for (PetscInt i = 0; i < blocks; ++i)
@@ -247,10 +269,12 @@ PetscErrorCode LamLDLCreate(PetscInt n, PetscInt positions, const PetscInt row[]
 {
   const PetscInt blocks = (n + 1) / 2;
   PetscInt64 *key;
-  PetscInt count;
+  PetscInt count, products;
   LamLDL ldl;
 
   PetscFunctionBeginUser;
+  *created = NULL;
+  if (blocks > MOST_PRODUCTS / LEAST_PER_BLOCK) PetscFunctionReturn(0);
   PetscCall(PetscNew(&ldl));
   *created = ldl;
   ldl->n = n;
@@ -261,10 +285,15 @@ PetscErrorCode LamLDLCreate(PetscInt n, PetscInt positions, const PetscInt row[]
   ldl->values = values;
   PetscCall(PetscMalloc4(blocks, &ldl->place, row[n], &ldl->to, blocks + 1, &ldl->start, blocks + 1, &ldl->source));
   PetscCall(FindPairs(n, blocks, row, column, &count, &key));
-  PetscCall(Order(ldl, positions / 2, count, key));
-  PetscCall(FindFill(ldl, count, key));
+  PetscCall(OrderPositions(ldl, positions / 2, count, key));
+  PetscCall(InsertOthers(ldl, positions / 2, count, key));
+  PetscCall(FindFill(ldl, count, key, &products));
   PetscCall(PetscFree(key));
-  PetscCall(FindTargets(ldl));
+  if (products > MOST_PRODUCTS) {
+    PetscCall(LamLDLDestroy(created));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(FindTargets(ldl, products));
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt k = row[i]; k < row[i + 1]; ++k) ldl->to[k] = FindEntry(ldl, i, column[k]);
   PetscCall(FindConstraints(ldl, column));
@@ -279,7 +308,7 @@ PetscErrorCode LamLDLDestroy(LamLDL *ldl)
 {
   PetscFunctionBeginUser;
   if (!*ldl) PetscFunctionReturn(0);
-  for (PetscInt h = 0; h < (*ldl)->n - (*ldl)->positions; ++h) {
+  for (PetscInt h = 0; (*ldl)->constraint && h < (*ldl)->n - (*ldl)->positions; ++h) {
     Constraint *c = &(*ldl)->constraint[h];
 
     if (!c->shares) PetscCall(PetscFree(c->pairs));

@@ -8,13 +8,12 @@
 
 #include <petscsys.h>
 
-#define LAM_LDL_LARGEST 120000 /* unknowns; MUMPS is faster beyond */
-
 typedef struct LamLDL_s *LamLDL;
 
 /* Upper triangle in compressed rows, the diagonal first: row [n+1], column and values [row[n]]; borrowed. The unknowns
    before `positions`, an even number, are eliminated first. Those after them may have a zero on the diagonal; all
-   positions that are coupled with the same one of these are coupled with each other. */
+   positions that are coupled with the same one of these are coupled with each other. *ldl is NULL if the factor would
+   be so large that MUMPS is as fast. */
 PetscErrorCode LamLDLCreate(PetscInt n, PetscInt positions, const PetscInt row[], const PetscInt column[],
                             const PetscReal values[], LamLDL *ldl);
 /* Factors the present values. *ok is PETSC_FALSE, and there is no factor, if more than `most` eigenvalues are negative
