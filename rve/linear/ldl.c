@@ -10,6 +10,7 @@
   rows,  [K + rho V V^T, V; V^T, 0] (x, lambda) = (a + rho V b, b),  which changes neither solution nor inertia.
 */
 #include "ldl.h"
+#include "clones.h"
 #include <limits.h>
 #include <stdint.h>
 #include <petscmat.h>
@@ -23,13 +24,6 @@
 
 typedef double Four __attribute__((vector_size(32))); /* a 2 x 2 block by columns; right-hand sides */
 typedef long Mask __attribute__((vector_size(32)));
-
-/* One binary that is fast on each processor. Resolvers of clones run before a sanitizer is set up. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#else
-#define CLONES
-#endif
 
 /* An unknown that comes last. */
 typedef struct {
@@ -360,7 +354,7 @@ static void AddConstraints(LamLDL ldl)
   }
 }
 
-CLONES static Outcome Factor(LamLDL ldl, PetscInt most)
+LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most)
 {
   const PetscInt *start = ldl->start;
   const unsigned short *target = ldl->target;
@@ -424,7 +418,7 @@ PetscErrorCode LamLDLNumeric(LamLDL ldl, PetscInt most, PetscInt *negative, Pets
 }
 
 /* x := (L D L^T)^-1 x; x [2 blocks]. */
-CLONES static void Substitute(LamLDL ldl, Four x[])
+LAM_CLONES static void Substitute(LamLDL ldl, Four x[])
 {
   const PetscInt *start = ldl->start, *index = ldl->index;
   const Four *factor = ldl->factor;

@@ -101,7 +101,7 @@ static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
 
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     pressure[g] = 0.0;
-    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) pressure[g] += rve->geometry[e].psi[g][k] * stress->p[k];
+    for (PetscInt k = 0; k < LAM_PRESSURES; ++k) pressure[g] += rve->geometry[e].psi[k][g] * stress->p[k];
   }
   LamFitBilinear(pressure, p);
   LamFitBilinear(stress->s, s);
@@ -134,7 +134,7 @@ static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE r
       stress->s[g] += base[k] * fit[1][k];
     }
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
-      stress->p[k] += rve->geometry[e].weight[g] * rve->geometry[e].psi[g][k] * p;
+      stress->p[k] += rve->geometry[e].weight[g] * rve->geometry[e].psi[k][g] * p;
   }
 }
 

@@ -1,5 +1,6 @@
 /*
-  The wall element: nine-node quadrilateral, discontinuous linear pressure (Q2/P1disc), 3 x 3 Gauss points.
+  The wall element: nine-node quadrilateral, discontinuous linear pressure (Q2/P1disc), 3 x 3 Gauss points. Quantities
+  at the points are arrays over them (wall_law.h).
 
   Energy of one element. The input is the nodal displacement u; its gradient H = F - 1 avoids cancellation at small
   strains.
@@ -26,17 +27,17 @@
 
 typedef struct {
   PetscReal dN[2 * LAM_GAUSS][LAM_PADDED_NODES]; /* [2 g + J][node]: dN/dX_J; padding is zero */
-  PetscReal weight[LAM_GAUSS];                   /* quadrature weight times reference area */
-  PetscReal psi[LAM_GAUSS][LAM_PRESSURES];
+  LamPoints shape[2][LAM_ELEMENT_NODES];         /* [J][node]: the same; padded with the last point */
+  LamPoints weight;                              /* quadrature weight times reference area; padding is zero */
+  LamPoints psi[LAM_PRESSURES];
   PetscReal fibre[2]; /* M */
 } LamElementGeometry;
 
 /* Independent stresses, and the stresses at the last evaluated displacements. */
 typedef struct {
-  PetscReal p[LAM_PRESSURES], s[LAM_GAUSS];   /* p*, s* */
-  PetscReal px[LAM_PRESSURES], sx[LAM_GAUSS]; /* at the last evaluated u */
-  PetscReal dds[LAM_GAUSS];                   /* d2W_fibre/dE^2 there */
-  PetscReal H[LAM_PRESSURES][LAM_PRESSURES];  /* dq/dc = sum w psi psi U'' */
+  PetscReal p[LAM_PRESSURES], px[LAM_PRESSURES]; /* p*; at the last evaluated u */
+  LamPoints s, sx, dds;                          /* s*; at the last evaluated u; d2W_fibre/dE^2 there */
+  PetscReal H[LAM_PRESSURES][LAM_PRESSURES];     /* dq/dc = sum w psi psi U'' */
 } LamElementStress;
 
 /* X[9][2]: reference positions; fibre: unit vector along the wall. */

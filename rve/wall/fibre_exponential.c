@@ -10,20 +10,25 @@
 /* Exponents beyond this are rejected: sums of squares of stresses would overflow (e^300 is 1e130). */
 #define LARGEST_EXPONENT 300.0
 
-void LamFibreExponential(const LamWall *wall, PetscReal strain, LamKernel1 *out)
+static void AtPoint(const LamWall *wall, PetscReal strain, PetscReal *W, PetscReal *d, PetscReal *dd)
 {
   const PetscReal square = strain * strain, x = wall->k2 * square;
   PetscReal growth, slope;
 
-  *out = (LamKernel1){0};
+  *W = *d = *dd = 0.0;
   if (wall->fibres == LAM_FIBRES_TENSION && strain <= 0.0) return;
   if (!(x <= LARGEST_EXPONENT)) {
-    out->W = (PetscReal)INFINITY; /* the element rejects this state */
+    *W = (PetscReal)INFINITY; /* the element rejects this state */
     return;
   }
   growth = expm1(x);
   slope = wall->k1 * (1.0 + growth);
-  out->W = 0.5 * wall->k1 * square * (x > 0.0 ? growth / x : 1.0);
-  out->d = slope * strain;
-  out->dd = slope * (1.0 + 2.0 * x);
+  *W = 0.5 * wall->k1 * square * (x > 0.0 ? growth / x : 1.0);
+  *d = slope * strain;
+  *dd = slope * (1.0 + 2.0 * x);
+}
+
+void LamFibreExponential(const LamWall *wall, const LamPoints strain, LamKernel1 *out)
+{
+  LAM_EACH_POINT(g) AtPoint(wall, strain[g], &out->W[g], &out->d[g], &out->dd[g]);
 }

@@ -4,11 +4,14 @@
 */
 #include "wall_law.h"
 
-void LamFibreQuadratic(const LamWall *wall, PetscReal strain, LamKernel1 *out)
+void LamFibreQuadratic(const LamWall *wall, const LamPoints strain, LamKernel1 *out)
 {
-  const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && strain <= 0.0 ? 0.0 : wall->C4;
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal active = wall->fibres == LAM_FIBRES_TENSION && strain[g] <= 0.0 ? 0.0 : wall->C4;
 
-  out->W = 0.25 * active * strain * strain;
-  out->d = 0.5 * active * strain;
-  out->dd = 0.5 * active;
+    out->W[g] = 0.25 * active * strain[g] * strain[g];
+    out->d[g] = 0.5 * active * strain[g];
+    out->dd[g] = 0.5 * active;
+  }
 }

@@ -12,68 +12,125 @@
   keep all digits of H. Energy and stress are written in these, with the first-order terms cancelled by hand.
 */
 #include "wall_law.h"
+#include <string.h>
+
+#define HALLEY (sizeof(PetscReal) > 8 ? 5 : 3) /* iterations */
 
 typedef struct {
-  PetscReal j, f, a, delta, phi, s2; /* as above */
-  PetscReal K1, K2, C;
+  LamPoints a, j, delta, s2, C, K1, K2; /* as above */
 } Invariants;
 
-static inline Invariants FindInvariants(const LamWall *wall, const PetscReal H[4], PetscReal H33)
+/* Cube roots of positive numbers: from a third of the exponent of a float (Kahan), by Halley's iteration. */
+LAM_INLINE void CubeRoot(const LamPoints x, LamPoints root)
 {
-  Invariants v;
-  PetscReal root;
+  float near[LAM_POINTS];
+  int32_t bits[LAM_POINTS];
 
-  v.delta = H[0] + H[3] + (H[0] * H[3] - H[1] * H[2]);
-  v.phi = H33 * (2.0 + H33);
-  v.s2 = PetscSqr(H[0] - H[3]) + PetscSqr(H[1] + H[2]);
-  v.j = 1.0 + v.delta;
-  v.f = 1.0 + H33;
-  v.a = 2.0 * v.j + v.s2;
-  root = cbrt(v.j * v.f);
-  v.C = root * root;
-  v.K1 = wall->C1 / v.C;
-  v.K2 = wall->C2 * PetscSqr(v.f / v.C);
-  return v;
-}
+  LAM_EACH_POINT(g) near[g] = (float)x[g];
+  memcpy(bits, near, sizeof(bits));
+  LAM_EACH_POINT(g) bits[g] = bits[g] / 3 + 709958130;
+  memcpy(near, bits, sizeof(bits));
+  LAM_EACH_POINT(g)
+  {
+    PetscReal r = (PetscReal)near[g];
 
-static inline PetscReal Energy(const Invariants *v)
-{
-  const PetscReal delta2 = v->delta * (2.0 + v->delta); /* j^2 - 1 */
-  const PetscReal m = delta2 * (1.0 + v->phi) + v->phi; /* J^2 - 1 */
-  const PetscReal c1 = m / (v->C * v->C + v->C + 1.0);  /* C - 1 */
-  const PetscReal c2 = c1 * (v->C + 1.0);               /* C^2 - 1 */
-  const PetscReal common = v->s2 - v->delta * v->delta;
-  const PetscReal I1 = common - delta2 * v->phi + c1 * c1 * (v->C + 2.0); /* I1 - 3 C */
-  const PetscReal I2 =
-      common + (v->s2 - 2.0 * v->delta * v->j) * v->phi - m * m + c2 * c2 * (v->C * v->C + 2.0); /* I2 - 3 C^2 */
+    for (PetscInt k = 0; k < HALLEY; ++k) { /* each triples the digits, of which a float's exponent gives one */
+      const PetscReal cube = r * r * r;
 
-  return 0.5 * (v->K1 * I1 + v->K2 / (v->f * v->f) * I2);
-}
-
-void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out)
-{
-  const PetscReal F[4] = {1.0 + H[0], H[1], H[2], 1.0 + H[3]}, cof[4] = {F[3], -F[2], -F[1], F[0]};
-  const PetscReal apart[4] = {H[0] - H[3], H[1] + H[2], H[1] + H[2], H[3] - H[0]}; /* F - cof F */
-  const Invariants v = FindInvariants(wall, H, H33);
-  const PetscReal f2 = v.f * v.f, jf = v.j * v.j / f2, ij = 1.0 / v.j, i_f = 1.0 / v.f, over = v.delta - v.phi;
-  const PetscReal two_a = v.K1 + v.K2;                                                              /* 2 dW/da */
-  const PetscReal mean = (v.K1 * (over - v.s2) + v.K2 * (v.j * over / f2 - 2.0 * v.s2)) * ij / 3.0; /* 2 W_a + W_j */
-  const PetscReal w_j = mean - two_a, w_aj = -(v.K1 + 2.0 * v.K2) * ij / 3.0, w_af = (v.K2 - v.K1) * i_f / 3.0;
-  const PetscReal w_jj = (5.0 * v.K1 * (v.a + f2) + v.K2 * (14.0 * v.a - jf)) * ij * ij / 9.0;
-  const PetscReal w_jf = (v.K1 * (2.0 * v.a - 4.0 * f2) - 4.0 * v.K2 * (jf + v.a)) * ij * i_f / 9.0;
-
-  out->W = Energy(&v);
-  for (PetscInt r = 0; r < 4; ++r) {
-    out->P[r] = two_a * apart[r] + mean * cof[r];
-    for (PetscInt c = 0; c < 4; ++c)
-      out->A[r][c] = 2.0 * w_aj * (F[r] * cof[c] + cof[r] * F[c]) + w_jj * cof[r] * cof[c];
-    out->A[r][r] += two_a;
-    out->A[r][4] = out->A[4][r] = 2.0 * w_af * F[r] + w_jf * cof[r];
+      r *= (cube + 2.0 * x[g]) / (2.0 * cube + x[g]);
+    }
+    root[g] = r;
   }
-  out->A[0][3] += w_j; /* d2j/dFdF */
-  out->A[3][0] += w_j;
-  out->A[1][2] -= w_j;
-  out->A[2][1] -= w_j;
-  out->P[4] = -(v.K1 * (2.0 * over + v.s2) + v.K2 * (2.0 * v.j * over / f2 - v.s2)) * i_f / 3.0;
-  out->A[4][4] = (v.K1 * (5.0 * v.a + 2.0 * f2) + v.K2 * (14.0 * jf - v.a)) * i_f * i_f / 9.0;
+}
+
+LAM_INLINE void FindInvariants(const LamWall *wall, const LamPoints H[4], PetscReal f, Invariants *v)
+{
+  LamPoints J, root;
+
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal apart = H[0][g] - H[3][g], sum = H[1][g] + H[2][g];
+
+    v->delta[g] = H[0][g] + H[3][g] + (H[0][g] * H[3][g] - H[1][g] * H[2][g]);
+    v->s2[g] = apart * apart + sum * sum;
+    v->j[g] = 1.0 + v->delta[g];
+    v->a[g] = 2.0 * v->j[g] + v->s2[g];
+    J[g] = v->j[g] * f;
+  }
+  CubeRoot(J, root);
+  LAM_EACH_POINT(g)
+  {
+    v->C[g] = root[g] * root[g];
+    v->K1[g] = wall->C1 / v->C[g];
+    v->K2[g] = wall->C2 * f * f / (v->C[g] * v->C[g]);
+  }
+}
+
+LAM_INLINE void Energy(const Invariants *v, PetscReal f, PetscReal phi, LamPoints W)
+{
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal delta = v->delta[g], j = v->j[g], s2 = v->s2[g], C = v->C[g];
+    const PetscReal delta2 = delta * (2.0 + delta); /* j^2 - 1 */
+    const PetscReal m = delta2 * (1.0 + phi) + phi; /* J^2 - 1 */
+    const PetscReal c1 = m / (C * C + C + 1.0);     /* C - 1 */
+    const PetscReal c2 = c1 * (C + 1.0);            /* C^2 - 1 */
+    const PetscReal common = s2 - delta * delta;
+    const PetscReal I1 = common - delta2 * phi + c1 * c1 * (C + 2.0);                             /* I1 - 3 C */
+    const PetscReal I2 = common + (s2 - 2.0 * delta * j) * phi - m * m + c2 * c2 * (C * C + 2.0); /* I2 - 3 C^2 */
+
+    W[g] = 0.5 * (v->K1[g] * I1 + v->K2[g] / (f * f) * I2);
+  }
+}
+
+LAM_CLONES void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
+                                      LamKernel *out)
+{
+  const PetscReal f = 1.0 + H33, phi = H33 * (2.0 + H33), f2 = f * f, i_f = 1.0 / f;
+  Invariants v;
+  LamPoints F[4], cof[4], w_aj, w_jj, w_af, w_jf; /* the first two: 2 W_aj, W_jj and so on */
+
+  FindInvariants(wall, H, f, &v);
+  Energy(&v, f, phi, out->W);
+  if (!derivatives) return;
+  LAM_EACH_POINT(g)
+  {
+    F[0][g] = cof[3][g] = 1.0 + H[0][g];
+    F[1][g] = H[1][g];
+    F[2][g] = H[2][g];
+    F[3][g] = cof[0][g] = 1.0 + H[3][g];
+    cof[1][g] = -H[2][g];
+    cof[2][g] = -H[1][g];
+  }
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal K1 = v.K1[g], K2 = v.K2[g], a = v.a[g], j = v.j[g], s2 = v.s2[g];
+    const PetscReal jf = j * j / f2, ij = 1.0 / j, over = v.delta[g] - phi, two_a = K1 + K2; /* 2 dW/da */
+    const PetscReal mean = (K1 * (over - s2) + K2 * (j * over / f2 - 2.0 * s2)) * ij / 3.0;  /* 2 W_a + W_j */
+    const PetscReal apart = H[0][g] - H[3][g], sum = H[1][g] + H[2][g];                      /* F - cof F */
+    const PetscReal w_j = mean - two_a;
+
+    w_aj[g] = -2.0 * (K1 + 2.0 * K2) * ij / 3.0;
+    w_af[g] = 2.0 * (K2 - K1) * i_f / 3.0;
+    w_jj[g] = (5.0 * K1 * (a + f2) + K2 * (14.0 * a - jf)) * ij * ij / 9.0;
+    w_jf[g] = (K1 * (2.0 * a - 4.0 * f2) - 4.0 * K2 * (jf + a)) * ij * i_f / 9.0;
+    out->P[0][g] = two_a * apart + mean * cof[0][g];
+    out->P[1][g] = two_a * sum + mean * cof[1][g];
+    out->P[2][g] = two_a * sum + mean * cof[2][g];
+    out->P[3][g] = -two_a * apart + mean * cof[3][g];
+    out->P[4][g] = -(K1 * (2.0 * over + s2) + K2 * (2.0 * j * over / f2 - s2)) * i_f / 3.0;
+    out->A[4][4][g] = (K1 * (5.0 * a + 2.0 * f2) + K2 * (14.0 * jf - a)) * i_f * i_f / 9.0;
+    /* here the first-order terms, below the others */
+    out->A[0][0][g] = out->A[1][1][g] = out->A[2][2][g] = out->A[3][3][g] = two_a;
+    out->A[0][3][g] = w_j; /* d2j/dFdF */
+    out->A[1][2][g] = -w_j;
+    out->A[0][1][g] = out->A[0][2][g] = out->A[1][3][g] = out->A[2][3][g] = 0.0;
+  }
+  for (PetscInt r = 0; r < 4; ++r) {
+    for (PetscInt c = r; c < 4; ++c) LAM_EACH_POINT(g)
+      {
+        out->A[r][c][g] += w_aj[g] * (F[r][g] * cof[c][g] + cof[r][g] * F[c][g]) + w_jj[g] * cof[r][g] * cof[c][g];
+      }
+    LAM_EACH_POINT(g) out->A[r][4][g] = w_af[g] * F[r][g] + w_jf[g] * cof[r][g];
+  }
 }

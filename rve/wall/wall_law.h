@@ -1,5 +1,5 @@
 /*
-  Wall laws: a table of pointwise kernels, each an energy density with its first and second derivatives.
+  Wall laws: a table of kernels, each an energy density with its first and second derivatives at points of the wall.
 
   W = W_matrix(F, F33) + W_fibre(E) + U(J),  plane strain with a prescribed stretch F33 along the prism axis.
   The matrix part is isochoric. U is the same for every law: U(J) = kappa/4 (J^2 - 1 - 2 ln J), applied to the
@@ -14,27 +14,35 @@
 #define LAM_RVE_WALL_LAW_H
 
 #include <petscsys.h>
+#include <stdint.h>
 #include <lamella/scene.h>
+#include "clones.h"
+
+/* Kernels take all points of an element at once: nine, padded to whole vector registers. Loops over points are written
+   so that the compiler vectorises them. */
+#define LAM_POINTS 12
+typedef PetscReal LamPoints[LAM_POINTS];
+#define LAM_EACH_POINT(g) for (PetscInt g = 0; g < LAM_POINTS; ++g)
 
 /* Components of (F, F33), and of (H, H33), in kernels: 0..3 are F11 F12 F21 F22, 4 is F33. */
 #define LAM_KERNEL_COMPONENTS 5
 
 typedef struct {
-  PetscReal W;
-  PetscReal P[LAM_KERNEL_COMPONENTS];                        /* dW/dF */
-  PetscReal A[LAM_KERNEL_COMPONENTS][LAM_KERNEL_COMPONENTS]; /* d2W/dFdF, symmetric */
+  LamPoints W;
+  LamPoints P[LAM_KERNEL_COMPONENTS];                        /* dW/dF */
+  LamPoints A[LAM_KERNEL_COMPONENTS][LAM_KERNEL_COMPONENTS]; /* d2W/dFdF, [r][c] with r <= c */
 } LamKernel;
 
 typedef struct {
-  PetscReal W, d, dd; /* energy, first and second derivative with respect to the one argument */
+  LamPoints W, d, dd; /* energy, first and second derivative with respect to the one argument */
 } LamKernel1;
 
 typedef struct {
   LamWallLawType type;
-  /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; requires det F > 0 and F33 > 0. */
-  void (*matrix)(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
+  /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; requires det F > 0 and F33 > 0. Without `derivatives` W alone. */
+  void (*matrix)(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives, LamKernel *out);
   /* Fibres as a function of their strain E; NULL if the law has no fibres. */
-  void (*fibre)(const LamWall *wall, PetscReal strain, LamKernel1 *out);
+  void (*fibre)(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
@@ -42,38 +50,42 @@ PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
 PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Kernels, one file each. */
-void LamMatrixMooneyRivlin(const LamWall *wall, const PetscReal H[4], PetscReal H33, LamKernel *out);
-void LamFibreQuadratic(const LamWall *wall, PetscReal strain, LamKernel1 *out);
-void LamFibreExponential(const LamWall *wall, PetscReal strain, LamKernel1 *out);
+void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
+                           LamKernel *out);
+void LamFibreQuadratic(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
+void LamFibreExponential(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
 
-/* Matrix kernel evaluated at F instead of H = F - 1. */
-static inline void LamMatrixAt(const LamWallLaw *law, const LamWall *wall, const PetscReal F[4], PetscReal F33,
-                               LamKernel *out)
-{
-  const PetscReal H[4] = {F[0] - 1.0, F[1], F[2], F[3] - 1.0};
-
-  law->matrix(wall, H, F33 - 1.0, out);
-}
-
+#define LAM_LOG_SERIES 0.1 /* largest |e| for which the series serves, ... */
+#define LAM_LOG_TERMS 14   /* ... to quadruple precision with as many terms */
 /* e - ln(1 + e) for e > -1, without cancellation near 0: with s = e/(2 + e) it is 2 s/(1 - s) - 2 artanh s. */
-static inline PetscReal LamLogRest(PetscReal e)
+LAM_INLINE void LamLogRest(const LamPoints e, LamPoints rest)
 {
-  const PetscReal s = e / (2.0 + e), s2 = s * s;
-  PetscReal sum = 0.0, power = 1.0;
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal s = e[g] / (2.0 + e[g]), s2 = s * s;
+    PetscReal sum = 0.0;
 
-  if (PetscAbsReal(e) > 0.1) return e - PetscLogReal(1.0 + e);
-  for (PetscInt k = 3; power > PETSC_MACHINE_EPSILON; k += 2, power *= s2) sum += power / (PetscReal)k;
-  return 2.0 * s2 * (1.0 / (1.0 - s) - s * sum);
+    for (PetscInt k = LAM_LOG_TERMS; k > 0; --k) sum = sum * s2 + 1.0 / (PetscReal)(2 * k + 1);
+    rest[g] = 2.0 * s2 * (1.0 / (1.0 - s) - s * sum);
+  }
+  LAM_EACH_POINT(g)
+  {
+    if (PetscAbsReal(e[g]) > LAM_LOG_SERIES) rest[g] = e[g] - PetscLogReal(1.0 + e[g]);
+  }
 }
 
-/* U(J) = kappa/4 (J^2 - 1 - 2 ln J), J = 1 + dilation > 0. */
-static inline void LamVolumetric(const LamWall *wall, PetscReal dilation, LamKernel1 *out)
+/* U(J) = kappa/4 (J^2 - 1 - 2 ln J), J = 1 + dilation > 0; energy: whether W is wanted. */
+LAM_INLINE void LamVolumetric(const LamWall *wall, const LamPoints dilation, PetscBool energy, LamKernel1 *out)
 {
-  const PetscReal inverse = 1.0 / (1.0 + dilation);
+  if (energy) LamLogRest(dilation, out->W);
+  LAM_EACH_POINT(g)
+  {
+    const PetscReal inverse = 1.0 / (1.0 + dilation[g]);
 
-  out->W = 0.25 * wall->bulk_modulus * (dilation * dilation + 2.0 * LamLogRest(dilation));
-  out->d = 0.5 * wall->bulk_modulus * dilation * (2.0 + dilation) * inverse;
-  out->dd = 0.5 * wall->bulk_modulus * (1.0 + inverse * inverse);
+    if (energy) out->W[g] = 0.25 * wall->bulk_modulus * (dilation[g] * dilation[g] + 2.0 * out->W[g]);
+    out->d[g] = 0.5 * wall->bulk_modulus * dilation[g] * (2.0 + dilation[g]) * inverse;
+    out->dd[g] = 0.5 * wall->bulk_modulus * (1.0 + inverse * inverse);
+  }
 }
 
 #endif

@@ -28,6 +28,7 @@
 #define hypot EXTENDED_FUNCTION(hypot)
 #define PETSC_PI EXTENDED_PI
 #define PETSC_MACHINE_EPSILON EXTENDED_EPSILON
+#define LAM_NO_CLONES
 #include "extended_names.h"
 
 /* it takes a response in double precision */
@@ -37,6 +38,7 @@
 #include "../../src/core/lattice.c"
 #include "../../rve/cells/mesh.c"
 #include "../../rve/wall/element.c"
+#include "../../rve/wall/element_fields.c"
 #include "../../rve/wall/wall_law.c"
 #include "../../rve/wall/matrix_mooney_rivlin.c"
 #include "../../rve/wall/fibre_quadratic.c"

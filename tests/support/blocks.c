@@ -133,7 +133,7 @@ static void BlocksStepThickness(Blocks *b, PetscInt e, const PetscReal x[][2], c
     for (PetscInt c = 0; c < 4; ++c)
       for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) F[c] += x[a][c / 2] * geometry->dN[2 * g + c % 2][a];
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
-      dc[k] += geometry->weight[g] * geometry->psi[g][k] * (F[0] * F[3] - F[1] * F[2]) * dF33;
+      dc[k] += geometry->weight[g] * geometry->psi[k][g] * (F[0] * F[3] - F[1] * F[2]) * dF33;
   }
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k)
     for (PetscInt l = 0; l < LAM_PRESSURES; ++l) b->stress[e].p[k] += b->stress[e].H[k][l] * dc[l];
@@ -179,7 +179,7 @@ void BlocksStartUnder(Blocks *b, PetscReal pressure)
     for (PetscInt k = 0; k < LAM_PRESSURES; ++k) {
       b->stress[e].p[k] = 0.0;
       for (PetscInt g = 0; g < LAM_GAUSS; ++g)
-        b->stress[e].p[k] -= pressure * b->geometry[e].weight[g] * b->geometry[e].psi[g][k];
+        b->stress[e].p[k] -= pressure * b->geometry[e].weight[g] * b->geometry[e].psi[k][g];
     }
 }
 

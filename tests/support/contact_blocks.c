@@ -1,4 +1,5 @@
 #include "contact_blocks.h"
+#include "kernels.h"
 
 /* ---- patch ---- */
 #define PATCH_SLAVE 2 /* elements along the interface */
@@ -55,16 +56,16 @@ PetscErrorCode PatchCreate(Blocks *b)
 static void PatchFields(const Blocks *b, PetscInt e, PetscInt g, double F[4], double *P22)
 {
   double x[LAM_ELEMENT_NODES][2];
-  LamKernel matrix;
-  LamKernel1 u;
+  MatrixPoint matrix;
+  KernelPoint u;
 
   BlocksGather(b, e, x);
   for (int c = 0; c < 4; c++) {
     F[c] = 0.0;
     for (int a = 0; a < LAM_ELEMENT_NODES; a++) F[c] += x[a][c / 2] * b->geometry[e].dN[2 * g + c % 2][a];
   }
-  LamMatrixAt(b->law, &b->wall, F, 1.0, &matrix);
-  LamVolumetric(&b->wall, F[0] * F[3] - F[1] * F[2] - 1.0, &u);
+  matrix = MatrixAt(b->law, &b->wall, F, 1.0);
+  u = VolumetricAt(&b->wall, F[0] * F[3] - F[1] * F[2] - 1.0);
   *P22 = matrix.P[3] + u.d * F[0];
 }
 

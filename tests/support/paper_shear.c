@@ -1,4 +1,5 @@
 #include "paper_shear.h"
+#include "kernels.h"
 
 ShearState RandomShear(uint64_t *seed)
 {
@@ -24,14 +25,14 @@ PetscErrorCode KernelStress(const ShearState *state, double P[5])
   const double F[4] = {1.0, state->s, 0.0, 1.0}, M[2] = {cos(state->psi), sin(state->psi)};
   const double Fm[2] = {M[0] + state->s * M[1], M[1]};
   const LamWallLaw *law;
-  LamKernel matrix;
-  LamKernel1 fibre, u;
+  MatrixPoint matrix;
+  KernelPoint fibre, u;
 
   PetscFunctionBeginUser;
   PetscCall(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law));
-  LamMatrixAt(law, &state->wall, F, 1.0, &matrix);
-  law->fibre(&state->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
-  LamVolumetric(&state->wall, 0.0, &u);
+  matrix = MatrixAt(law, &state->wall, F, 1.0);
+  fibre = FibreAt(law, &state->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0);
+  u = VolumetricAt(&state->wall, 0.0);
   P[4] = matrix.P[4] + u.d;
   for (int c = 0; c < 4; c++) {
     const double cof = c == 1 ? 0.0 : (c == 2 ? -state->s : 1.0);

@@ -1,4 +1,5 @@
 #include "strip.h"
+#include "kernels.h"
 
 static void StripPlace(void *ctx, PetscInt i, PetscInt j, PetscReal X[2])
 {
@@ -204,8 +205,8 @@ static StripPoint StripAtPoint(const Strip *strip, PetscInt e, PetscInt g)
   const LamElementGeometry *geometry = &b->geometry[e];
   double x[LAM_ELEMENT_NODES][2], N[LAM_ELEMENT_NODES], dN[LAM_ELEMENT_NODES][2], xi, eta, weight, p = 0.0, Fm[2];
   StripPoint point = {0};
-  LamKernel matrix;
-  LamKernel1 fibre;
+  MatrixPoint matrix;
+  KernelPoint fibre;
 
   BlocksGather(b, e, x);
   LamGaussPoint(g, &xi, &eta, &weight);
@@ -218,9 +219,9 @@ static StripPoint StripAtPoint(const Strip *strip, PetscInt e, PetscInt g)
     for (int c = 0; c < 4; c++) point.F[c] += x[a][c / 2] * geometry->dN[2 * g + c % 2][a];
   }
   for (int i = 0; i < 2; i++) Fm[i] = point.F[2 * i] * geometry->fibre[0] + point.F[2 * i + 1] * geometry->fibre[1];
-  for (int k = 0; k < LAM_PRESSURES; k++) p += geometry->psi[g][k] * b->stress[e].px[k];
-  LamMatrixAt(b->law, &b->wall, point.F, 1.0, &matrix);
-  b->law->fibre(&b->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
+  for (int k = 0; k < LAM_PRESSURES; k++) p += geometry->psi[k][g] * b->stress[e].px[k];
+  matrix = MatrixAt(b->law, &b->wall, point.F, 1.0);
+  fibre = FibreAt(b->law, &b->wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0);
   for (int c = 0; c < 4; c++)
     point.P[c] =
         matrix.P[c] + p * (c % 3 ? -1.0 : 1.0) * point.F[3 - c] + 2.0 * fibre.d * Fm[c / 2] * geometry->fibre[c % 2];

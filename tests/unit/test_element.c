@@ -1,5 +1,6 @@
 /* The wall element: patch test, derivatives, projection, invariance. */
 #include "support/rve_fixture.h"
+#include "support/kernels.h"
 #include "support/displaced.h"
 
 static const LamWall quadratic = {.C1 = 0.7, .C2 = 0.3, .C4 = 12.0, .bulk_modulus = 1000.0};
@@ -83,12 +84,12 @@ static double Homogeneous(const Element *element, const double F[4], double P[4]
 {
   const double J = F[0] * F[3] - F[1] * F[2], cof[4] = {F[3], -F[2], -F[1], F[0]};
   const double Fm[2] = {F[0] * fibre[0] + F[1] * fibre[1], F[2] * fibre[0] + F[3] * fibre[1]};
-  LamKernel matrix;
-  LamKernel1 u, fibres;
+  MatrixPoint matrix;
+  KernelPoint u, fibres;
 
-  LamMatrixAt(element->law, &wall, F, 1.0, &matrix);
-  LamVolumetric(&wall, J - 1.0, &u);
-  element->law->fibre(&wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibres);
+  matrix = MatrixAt(element->law, &wall, F, 1.0);
+  u = VolumetricAt(&wall, J - 1.0);
+  fibres = FibreAt(element->law, &wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0);
   for (int c = 0; c < 4; c++) P[c] = matrix.P[c] + u.d * cof[c] + 2.0 * fibres.d * Fm[c / 2] * fibre[c % 2];
   return matrix.W + u.W + fibres.W;
 }
@@ -289,12 +290,12 @@ TEST(LinearDilatationIsProjectedOntoItself)
   assert_true(valid);
   for (int g = 0; g < LAM_GAUSS; g++) {
     double xi, eta, weight, N[9], dN[9][2], X1 = 0.0;
-    LamKernel1 u;
+    KernelPoint u;
 
     LamGaussPoint(g, &xi, &eta, &weight);
     LamShape(xi, eta, N, dN);
     for (int a = 0; a < 9; a++) X1 += N[a] * element.X[a][0];
-    LamVolumetric(&fluid, c * X1, &u);
+    u = VolumetricAt(&fluid, c * X1);
     expected += element.geometry.weight[g] * u.W;
   }
   assert_near(energy, expected, 1e-12 * expected);
@@ -311,7 +312,7 @@ TEST(PressureBasisIsOrthonormal)
       double dot = 0.0;
 
       for (int g = 0; g < LAM_GAUSS; g++)
-        dot += element.geometry.weight[g] * element.geometry.psi[g][k] * element.geometry.psi[g][l];
+        dot += element.geometry.weight[g] * element.geometry.psi[k][g] * element.geometry.psi[l][g];
       assert_near(dot, k == l ? 1.0 : 0.0, 1e-13);
     }
 }

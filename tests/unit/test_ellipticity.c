@@ -1,5 +1,6 @@
 /* The weakest band of a tangent and the weakest shear band of a wall: exact cases, and searches over all directions. */
 #include "support/test.h"
+#include "support/kernels.h"
 #include <string.h>
 #include <lamella/ellipticity.h>
 #include "support/random_reals.h"
@@ -204,12 +205,12 @@ static void WallTangent(const LamWall *wall, const double F[4], double angle, do
   const double M[2] = {cos(angle), sin(angle)};
   const double Fm[2] = {F[0] * M[0] + F[1] * M[1], F[2] * M[0] + F[3] * M[1]};
   const LamWallLaw *law;
-  LamKernel matrix;
-  LamKernel1 fibre;
+  MatrixPoint matrix;
+  KernelPoint fibre;
 
   assert_int_equal(LamWallLawGet(wall->law, &law), 0);
-  LamMatrixAt(law, wall, F, 1.0, &matrix);
-  law->fibre(wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0, &fibre);
+  matrix = MatrixAt(law, wall, F, 1.0);
+  fibre = FibreAt(law, wall, Fm[0] * Fm[0] + Fm[1] * Fm[1] - 1.0);
   for (int a = 0; a < 4; a++)
     for (int b = 0; b < 4; b++) {
       A[a][b] = matrix.A[a][b] + 4 * fibre.dd * Fm[a / 2] * M[a % 2] * Fm[b / 2] * M[b % 2];

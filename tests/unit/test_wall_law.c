@@ -1,5 +1,6 @@
 /* Wall law kernels against closed forms and against finite differences at random states. */
 #include "support/test.h"
+#include "support/kernels.h"
 #include "wall_law.h"
 #include "support/random_reals.h"
 
@@ -26,24 +27,20 @@ static LamWall Stiffening(double k2)
   return (LamWall){.law = LAM_WALL_FIBRE_EXPONENTIAL, .C1 = 0.7, .C2 = 0.3, .k1 = 6.0, .k2 = k2, .bulk_modulus = 1000};
 }
 
-static LamKernel Matrix(const double F[4], double F33)
+static MatrixPoint Matrix(const double F[4], double F33)
 {
   const LamWallLaw *law;
-  LamKernel kernel;
 
   assert_int_equal(LamWallLawGet(LAM_WALL_MOONEY_RIVLIN, &law), 0);
-  LamMatrixAt(law, &wall, F, F33, &kernel);
-  return kernel;
+  return MatrixAt(law, &wall, F, F33);
 }
 
-static LamKernel1 Fibre(const LamWall *of, double I4)
+static KernelPoint Fibre(const LamWall *of, double I4)
 {
   const LamWallLaw *law;
-  LamKernel1 kernel;
 
   assert_int_equal(LamWallLawGet(of->law, &law), 0);
-  law->fibre(of, I4 - 1.0, &kernel);
-  return kernel;
+  return FibreAt(law, of, I4 - 1.0);
 }
 
 /* Uniaxial tension of an incompressible body: W and s1 - s2 = C1 (l^2 - 1/l) + C2 (l - 1/l^2) (Mooney). */
@@ -51,7 +48,7 @@ TEST(MatrixUniaxialIsExact)
 {
   for (double l = 0.6; l < 2.1; l += 0.3) {
     const double r = 1.0 / sqrt(l), F[4] = {l, 0, 0, r};
-    const LamKernel k = Matrix(F, r);
+    const MatrixPoint k = Matrix(F, r);
 
     AssertClose(k.W, 0.5 * wall.C1 * (l * l + 2.0 / l - 3.0) + 0.5 * wall.C2 * (2.0 * l + 1.0 / (l * l) - 3.0), 1e-13);
     AssertClose(l * k.P[0] - r * k.P[3], wall.C1 * (l * l - 1.0 / l) + wall.C2 * (l - 1.0 / (l * l)), 1e-13);
@@ -64,7 +61,7 @@ TEST(MatrixSimpleShearIsExact)
 {
   for (double g = -1.0; g < 1.1; g += 0.4) {
     const double F[4] = {1, g, 0, 1};
-    const LamKernel k = Matrix(F, 1.0);
+    const MatrixPoint k = Matrix(F, 1.0);
     const double s11 = k.P[0] + g * k.P[1], s22 = k.P[3], s12 = k.P[1];
 
     AssertClose(k.W, 0.5 * (wall.C1 + wall.C2) * g * g, 1e-13);
@@ -81,7 +78,7 @@ TEST(MatrixIsIsochoric)
 
   for (int n = 0; n < STATES; n++) {
     double F[4], G[4], F33, trace;
-    LamKernel k;
+    MatrixPoint k;
 
     RandomState(&seed, F, &F33);
     for (int i = 0; i < 4; i++) G[i] = 1.2 * F[i];
@@ -97,7 +94,7 @@ TEST(MatrixIsIsochoric)
 TEST(FibreUniaxialIsExact)
 {
   for (double l = 0.6; l < 2.1; l += 0.3) {
-    const LamKernel1 k = Fibre(&wall, l * l);
+    const KernelPoint k = Fibre(&wall, l * l);
 
     AssertClose(k.W, 0.25 * wall.C4 * pow(l * l - 1.0, 2), 1e-13);
     AssertClose(2.0 * l * l * k.d, wall.C4 * l * l * (l * l - 1.0), 1e-13);
@@ -108,7 +105,7 @@ TEST(FibreUniaxialIsExact)
 TEST(FibreSimpleShearIsExact)
 {
   for (double g = -1.0; g < 1.1; g += 0.4) {
-    const LamKernel1 k = Fibre(&wall, 1.0 + g * g);
+    const KernelPoint k = Fibre(&wall, 1.0 + g * g);
 
     AssertClose(2.0 * k.d * g, wall.C4 * g * g * g, 1e-13);
   }
@@ -118,7 +115,7 @@ TEST(FibreSimpleShearIsExact)
 TEST(SlackFibresCarryNothing)
 {
   LamWall tension = wall;
-  LamKernel1 slack, taut, both;
+  KernelPoint slack, taut, both;
 
   tension.fibres = LAM_FIBRES_TENSION;
   slack = Fibre(&tension, 0.81);
@@ -145,7 +142,7 @@ static double MatrixDifference(const double F[4], double F33, int c, int value)
 
   for (int k = 0; k < 4; k++) {
     double G[5] = {F[0], F[1], F[2], F[3], F33};
-    LamKernel kernel;
+    MatrixPoint kernel;
 
     G[c] += at[k] * h;
     kernel = Matrix(G, G[4]);
@@ -196,11 +193,11 @@ TEST(VolumetricDerivativesFollowFromEnergy)
   const double h = 1e-5;
 
   for (double J = 0.8; J < 1.3; J += 0.07) {
-    LamKernel1 k, plus, minus;
+    KernelPoint k, plus, minus;
 
-    LamVolumetric(&wall, J - 1.0, &k);
-    LamVolumetric(&wall, J - 1.0 + h, &plus);
-    LamVolumetric(&wall, J - 1.0 - h, &minus);
+    k = VolumetricAt(&wall, J - 1.0);
+    plus = VolumetricAt(&wall, J - 1.0 + h);
+    minus = VolumetricAt(&wall, J - 1.0 - h);
     AssertClose(k.W, 0.25 * wall.bulk_modulus * (J * J - 1.0 - 2.0 * log(J)), 1e-12);
     AssertClose(k.d, (plus.W - minus.W) / (2.0 * h), 1e-6);
     AssertClose(k.dd, (plus.d - minus.d) / (2.0 * h), 1e-6);
@@ -211,10 +208,10 @@ TEST(VolumetricDerivativesFollowFromEnergy)
 TEST(SmallStrainModuliAreThoseOfTheLaw)
 {
   const double unit[4] = {1, 0, 0, 1};
-  const LamKernel k = Matrix(unit, 1.0);
-  LamKernel1 u;
+  const MatrixPoint k = Matrix(unit, 1.0);
+  KernelPoint u;
 
-  LamVolumetric(&wall, 0.0, &u);
+  u = VolumetricAt(&wall, 0.0);
   AssertClose(k.A[1][1], wall.C1 + wall.C2, 1e-13);
   AssertClose(k.A[0][0] - k.A[0][3], 2.0 * (wall.C1 + wall.C2), 1e-13);
   AssertClose(u.dd, wall.bulk_modulus, 1e-13);
@@ -228,7 +225,7 @@ TEST(ExponentialFibresAreExact)
 
   for (double l = 0.6; l < 1.6; l += 0.1) {
     const double e = l * l - 1.0;
-    const LamKernel1 k = Fibre(&of, l * l);
+    const KernelPoint k = Fibre(&of, l * l);
 
     AssertClose(k.W, of.k1 / (2.0 * of.k2) * (exp(of.k2 * e * e) - 1.0), 1e-13);
     AssertClose(2.0 * l * l * k.d, 2.0 * of.k1 * l * l * e * exp(of.k2 * e * e), 1e-12);
@@ -245,7 +242,7 @@ TEST(ExponentialFibresFollowFromTheirEnergy)
   for (int n = 0; n < STATES; n++) {
     const LamWall of = Stiffening(RandomReal(&seed, 0.0, 4.0));
     const double I4 = RandomReal(&seed, 0.4, 1.9);
-    const LamKernel1 k = Fibre(&of, I4), plus = Fibre(&of, I4 + h), minus = Fibre(&of, I4 - h);
+    const KernelPoint k = Fibre(&of, I4), plus = Fibre(&of, I4 + h), minus = Fibre(&of, I4 - h);
 
     AssertClose(k.d, (plus.W - minus.W) / (2.0 * h), 1e-6);
     AssertClose(k.dd, (plus.d - minus.d) / (2.0 * h), 1e-6);
@@ -261,7 +258,7 @@ TEST(ExponentialFibresBecomeQuadratic)
   for (size_t s = 0; s < PETSC_STATIC_ARRAY_LENGTH(small); s++)
     for (double I4 = 0.5; I4 < 2.0; I4 += 0.1) {
       const LamWall of = Stiffening(small[s]);
-      const LamKernel1 k = Fibre(&of, I4), quadratic = Fibre(&wall, I4);
+      const KernelPoint k = Fibre(&of, I4), quadratic = Fibre(&wall, I4);
 
       AssertClose(k.W, quadratic.W, 1e-13);
       AssertClose(k.d, quadratic.d, 1e-13);

@@ -2,6 +2,7 @@
  * docs/results/paper.md.
  */
 #include "support/rve_fixture.h"
+#include "support/kernels.h"
 #include "support/gap_between_walls.h"
 #include "support/paper_shear.h"
 
@@ -54,12 +55,11 @@ TEST(ProfileHasTheShearOfTheCubic)
 /* d P12 / d F12 of the kernels. */
 static double ShearTangent(const LamWall *wall, double psi, double s)
 {
-  const double H[4] = {0.0, s, 0.0, 0.0}, Fm1 = cos(psi) + s * sin(psi), M2 = sin(psi);
-  LamKernel matrix;
-  LamKernel1 fibre;
+  const double F[4] = {1.0, s, 0.0, 1.0}, Fm1 = cos(psi) + s * sin(psi), M2 = sin(psi);
+  const LamWallLaw law = {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamFibreQuadratic};
+  const MatrixPoint matrix = MatrixAt(&law, wall, F, 1.0);
+  const KernelPoint fibre = FibreAt(&law, wall, Fm1 * Fm1 + M2 * M2 - 1.0);
 
-  LamMatrixMooneyRivlin(wall, H, 0.0, &matrix);
-  LamFibreQuadratic(wall, Fm1 * Fm1 + M2 * M2 - 1.0, &fibre);
   return matrix.A[1][1] + 4.0 * fibre.dd * PetscSqr(Fm1 * M2) + 2.0 * fibre.d * M2 * M2;
 }
 
