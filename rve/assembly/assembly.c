@@ -125,6 +125,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);
     LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear->values);
   }
+  rve->energy = *energy;
   PetscFunctionReturn(0);
 }
 

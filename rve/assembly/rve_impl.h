@@ -90,6 +90,7 @@ struct LamRVE_s {
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
   PetscBool looks_back;                   /* the solve looks for the end of a branch before it: no further one does */
+  PetscReal energy;                       /* of the last assembly */
   PetscBool consistent;        /* residual and linear.values are evaluated at y with the wall stresses of y */
   PetscBool moved;             /* y has been moved affinely since the last solution */
   PetscReal lowest_eigenvalue; /* of the last unstable state found */

@@ -72,12 +72,16 @@ static inline PetscReal LamLargestDiagonal(const LamLinear *linear)
   return largest;
 }
 
+/* Four partial sums, so that it is vectorised. */
 static inline PetscReal LamInnerProduct(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
-  PetscReal sum = 0.0;
+  PetscReal sum[4] = {0.0};
+  PetscInt i = 0;
 
-  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
+  for (; i + 4 <= n; i += 4)
+    for (PetscInt k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i < n; ++i) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 #endif

@@ -258,45 +258,28 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
     r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
 }
 
-/* Corrects L_F to first order to the solution near the positions: -= L_Fy K^-1 r. */
-static PetscErrorCode RelaxStress(LamRVE rve, Condensation *c)
-{
-  const PetscInt n = rve->linear->n;
-  PetscReal *r, *step, *R;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n, &r, n, &step, n, &R));
-  CopyResidual(rve, r);
-  PetscCall(LamLinearSolve(rve->linear, 1, r, step));
-  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
-    LamCopyActive(rve, c->R + q * c->size + 2, R);
-    c->Lq[q] -= LamInnerProduct(n, R, step);
-  }
-  PetscCall(PetscFree3(r, step, R));
-  PetscFunctionReturn(0);
-}
-
-/* H = (L_qq - R^T K^-1 R) / V0. */
-static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscReal H[NQ][NQ])
+/* Corrects L_F to first order to the solution near the positions, -= L_Fy K^-1 r, and with `derivatives` sets
+   H = (L_qq - R^T K^-1 R) / V0. */
+static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscBool derivatives, PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear->n, nq = c->nq;
-  PetscReal *R, *X;
+  PetscReal *rhs, *solution, *R, *X; /* r and its solution, then the columns and theirs */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(nq * n, &R, nq * n, &X));
+  PetscCall(PetscMalloc2((nq + 1) * n, &rhs, (nq + 1) * n, &solution));
+  R = rhs + n;
+  X = solution + n;
+  CopyResidual(rve, rhs);
   for (PetscInt q = 0; q < nq; ++q) LamCopyActive(rve, c->R + q * c->size + 2, R + q * n);
-  PetscCall(LamLinearSolve(rve->linear, nq, R, X));
-  for (PetscInt q = 0; q < nq; ++q)
+  PetscCall(LamLinearSolve(rve->linear, derivatives ? nq + 1 : 1, rhs, solution));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) c->Lq[q] -= LamInnerProduct(n, R + q * n, solution);
+  for (PetscInt q = 0; q < nq && derivatives; ++q)
     for (PetscInt r = q; r < nq; ++r) {
-      PetscReal a = 0.0, b = 0.0;
+      const PetscReal sum = LamInnerProduct(n, R + q * n, X + r * n) + LamInnerProduct(n, R + r * n, X + q * n);
 
-      for (PetscInt i = 0; i < n; ++i) {
-        a += R[q * n + i] * X[r * n + i];
-        b += R[r * n + i] * X[q * n + i];
-      }
-      H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * (a + b)) / rve->mesh.V0;
+      H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * sum) / rve->mesh.V0;
     }
-  PetscCall(PetscFree2(R, X));
+  PetscCall(PetscFree2(rhs, solution));
   PetscFunctionReturn(0);
 }
 
@@ -346,13 +329,10 @@ static PetscReal ContactError(LamRVE rve, const PetscReal H[NQ][NQ], const LamRe
   return LamStressError(changed, response->P);
 }
 
-static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *response)
+static void FillDerivatives(LamRVE rve, const PetscReal H[NQ][NQ], LamResponse *response)
 {
   const PetscInt *component = LamFComponent;
-  PetscReal H[NQ][NQ] = {{0}};
 
-  PetscFunctionBeginUser;
-  PetscCall(Condense(rve, c, H));
   for (PetscInt i = 0; i < 9; ++i) response->P_turgor[i] = response->P_cohesion[i] = 0.0;
   for (PetscInt q = 0; q < 5; ++q) {
     response->P_turgor[component[q]] = H[q][Q_TURGOR];
@@ -360,28 +340,26 @@ static PetscErrorCode FillDerivatives(LamRVE rve, Condensation *c, LamResponse *
     for (PetscInt r = 0; r < 5; ++r) response->tangent[9 * component[q] + component[r]] = H[q][r];
   }
   LamResponseFindBand(response);
-  if (rve->contact) response->contact_error = ContactError(rve, (const PetscReal(*)[NQ])H, response);
+  if (rve->contact) response->contact_error = ContactError(rve, H, response);
   response->energy_turgor2 = H[Q_TURGOR][Q_TURGOR];
   response->energy_cohesion2 = H[Q_COHESION][Q_COHESION];
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
+  const PetscBool derivatives = (PetscBool)((rve->wanted & LAM_WANT_DERIVATIVES) != 0);
   Condensation c = {0};
-  PetscReal energy;
-  PetscBool valid;
+  PetscReal H[NQ][NQ] = {{0}};
 
   PetscFunctionBeginUser;
-  PetscCall(LamAssembleEnergy(rve, load, rve->y, &energy, &valid));
   PetscCall(Assemble(rve, load, &c));
-  PetscCall(RelaxStress(rve, &c));
+  PetscCall(Condense(rve, &c, derivatives, H));
   for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
-  if (rve->wanted & LAM_WANT_DERIVATIVES) PetscCall(FillDerivatives(rve, &c, response));
+  if (derivatives) FillDerivatives(rve, (const PetscReal(*)[NQ])H, response);
   PetscCall(PetscFree(c.R));
-  response->energy = energy / rve->mesh.V0;
+  response->energy = rve->energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;
   response->opening_fraction = load->F[8] * c.gap / rve->mesh.V0;
   response->energy_turgor = c.Lq[Q_TURGOR] / rve->mesh.V0;

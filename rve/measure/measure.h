@@ -26,8 +26,8 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
                                    PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[]);
 /* Copies a column [n], with zeros for multipliers that are not active. */
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
-/* Sets energy, P and lumen fraction from rve->y and, if requested, tangent and couplings with the factored consistent
-   tangent. */
+/* Sets energy, P and lumen fraction at rve->y, where the consistent tangent is assembled and factored, and, if requested,
+   tangent and couplings. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Whether a value exceeds that of the location reported so far by more than rounding (C1 + C2 or apothems). Among
    locations that are equal by symmetry the first one is reported, regardless of the last digits. Every value exceeds

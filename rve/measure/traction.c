@@ -23,15 +23,13 @@ static void NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
   (void)PetscArrayzero(force, 2 * mesh->node_count);
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
-    LamElementResult element;
-    PetscBool valid;
+    PetscReal f[LAM_ELEMENT_DOFS];
 
     if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
     LamGatherDisplacements(rve, load->F, rve->y, e, u);
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                       &rve->stress[e], &element, &valid);
+    LamElementForces(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8], f);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
-      for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += element.f[2 * a + d];
+      for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += f[2 * a + d];
   }
 }
 

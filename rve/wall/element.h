@@ -78,6 +78,10 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
                          const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
                          PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);
 
+/* dPi_e/dx alone; u must be valid. */
+void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS]);
+
 /* Fibre stretch sqrt(I4) and largest in-plane principal Cauchy stress at the Gauss points. */
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);

@@ -19,6 +19,26 @@ LAM_INLINE void FindWallStress(const LamElementGeometry *geometry, const LamWall
   Extension(geometry, H, extension);
 }
 
+LAM_CLONES void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                 const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
+{
+  LamPoints F[4], extension;
+  LamElementStress local;
+  PointStress at;
+
+  FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
+  for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+    for (PetscInt i = 0; i < 2; ++i) {
+      LamPoints part;
+
+      LAM_EACH_POINT(g)
+      {
+        part[g] = at.P[2 * i][g] * geometry->shape[0][a][g] + at.P[2 * i + 1][g] * geometry->shape[1][a][g];
+      }
+      f[2 * a + i] = Total(part);
+    }
+}
+
 LAM_CLONES void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                                  const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
                                  PetscReal stress[LAM_GAUSS])
