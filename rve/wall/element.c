@@ -116,8 +116,8 @@ PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal 
   return Kinematics(geometry, u, F33, H, dilation);
 }
 
-LAM_CLONES void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                 const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
+LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                     const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
 {
   LamPoints H[4], dilation, sum;
   LamKernel1 volume, fibre;
@@ -131,6 +131,12 @@ LAM_CLONES void LamElementEnergy(const LamElementGeometry *geometry, const LamWa
   LAM_EACH_POINT(g) sum[g] = geometry->weight[g] * (matrix.W[g] + volume.W[g] + fibre.W[g]);
   *energy = Total(sum);
   *valid = (PetscBool)isfinite(*energy);
+}
+
+void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
+{
+  ElementEnergy(geometry, law, wall, u, F33, energy, valid);
 }
 
 /* K[a][b] += sum_r left[r][a] right[r][b], over padded rows; three rows of K at a time stay in registers. */
@@ -178,9 +184,9 @@ LAM_INLINE void AddProjection(const PetscReal H[3][3], const PetscReal D[2][LAM_
   AddProduct(LAM_PRESSURES, E[1], E[1], K[2]);
 }
 
-LAM_CLONES void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                   const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
-                                   LamElementResult *out, PetscBool *valid)
+LAM_CLONES static void ElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                       const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
+                                       LamElementResult *out, PetscBool *valid)
 {
   LamPoints H[4], dilation, energy;
   PetscReal T[3][2 * LAM_GAUSS][LAM_PADDED_NODES];           /* A dN for the component pairs 11, 12, 22 */
@@ -240,9 +246,16 @@ LAM_CLONES void LamElementEvaluate(const LamElementGeometry *geometry, const Lam
   }
 }
 
-LAM_CLONES void LamElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal u[][2],
-                                       const PetscReal du[][2], PetscReal F33, PetscReal dF33, PetscReal alpha,
-                                       LamElementStress *stress)
+void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
+                        PetscBool *valid)
+{
+  ElementEvaluate(geometry, law, wall, u, F33, stress, out, valid);
+}
+
+LAM_CLONES static void ElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall,
+                                           const PetscReal u[][2], const PetscReal du[][2], PetscReal F33,
+                                           PetscReal dF33, PetscReal alpha, LamElementStress *stress)
 {
   LamPoints H[4], F[4], dF[4], dE[4], dJ;
   PetscReal dc[LAM_PRESSURES], h[2][2];
@@ -271,9 +284,16 @@ LAM_CLONES void LamElementUpdateStress(const LamElementGeometry *geometry, const
   }
 }
 
-LAM_CLONES PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law,
-                                                   const LamWall *wall, const PetscReal u[][2], PetscReal F33,
-                                                   LamElementStress *stress)
+void LamElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall, const PetscReal u[][2],
+                            const PetscReal du[][2], PetscReal F33, PetscReal dF33, PetscReal alpha,
+                            LamElementStress *stress)
+{
+  ElementUpdateStress(geometry, wall, u, du, F33, dF33, alpha, stress);
+}
+
+LAM_CLONES static PetscBool ElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law,
+                                                       const LamWall *wall, const PetscReal u[][2], PetscReal F33,
+                                                       LamElementStress *stress)
 {
   LamPoints H[4], dilation;
   LamKernel1 volume, fibre;
@@ -292,9 +312,15 @@ LAM_CLONES PetscBool LamElementSetConsistentStress(const LamElementGeometry *geo
   return PETSC_TRUE;
 }
 
-LAM_CLONES void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                    const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
-                                    PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
+PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress)
+{
+  return ElementSetConsistentStress(geometry, law, wall, u, F33, stress);
+}
+
+LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                        const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
+                                        PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
 {
   const PetscReal dE33 = 2.0 * wall->dispersion * F33;
   PetscReal Df[LAM_PRESSURES], HDf[LAM_PRESSURES], h[2][2], nodes[2][LAM_PADDED_NODES] = {{0.0}};
@@ -333,4 +359,11 @@ LAM_CLONES void LamElementStretch33(const LamElementGeometry *geometry, const La
       for (PetscInt a = 0; a < LAM_PADDED_NODES; ++a) nodes[r / 2][a] += mixed[r][g] * geometry->dN[2 * g + r % 2][a];
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
     for (PetscInt i = 0; i < 2; ++i) fx[2 * a + i] = nodes[i][a];
+}
+
+void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
+                         PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
+{
+  ElementStretch33(geometry, law, wall, u, F33, stress, force, fx, ff);
 }

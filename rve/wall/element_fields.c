@@ -19,8 +19,8 @@ LAM_INLINE void FindWallStress(const LamElementGeometry *geometry, const LamWall
   Extension(geometry, H, extension);
 }
 
-LAM_CLONES void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                 const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
+LAM_CLONES static void ElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                     const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
 {
   LamPoints F[4], extension;
   LamElementStress local;
@@ -39,9 +39,15 @@ LAM_CLONES void LamElementForces(const LamElementGeometry *geometry, const LamWa
     }
 }
 
-LAM_CLONES void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                 const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
-                                 PetscReal stress[LAM_GAUSS])
+void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
+{
+  ElementForces(geometry, law, wall, u, F33, f);
+}
+
+LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                     const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
+                                     PetscReal stress[LAM_GAUSS])
 {
   LamPoints F[4], extension;
   LamElementStress local;
@@ -59,8 +65,14 @@ LAM_CLONES void LamElementFields(const LamElementGeometry *geometry, const LamWa
   }
 }
 
-LAM_CLONES void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                     const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                      const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS])
+{
+  ElementFields(geometry, law, wall, u, F33, fibre, stress);
+}
+
+LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                                         const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
 {
   LamPoints F[4], Fm[2], extension;
   LamElementStress local;
@@ -91,4 +103,10 @@ LAM_CLONES void LamElementWallPoints(const LamElementGeometry *geometry, const L
     points[g].ellipticity = LamShearBandStiffness((const PetscReal(*)[4])A, f);
     points[g].kinked = points[g].ellipticity < 0.0 ? w : 0.0;
   }
+}
+
+void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+{
+  ElementWallPoints(geometry, law, wall, u, F33, points);
 }

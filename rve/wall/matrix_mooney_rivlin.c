@@ -83,8 +83,8 @@ LAM_INLINE void Energy(const Invariants *v, PetscReal f, PetscReal phi, LamPoint
   }
 }
 
-LAM_CLONES void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
-                                      LamKernel *out)
+LAM_CLONES static void MooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
+                                    LamKernel *out)
 {
   const PetscReal f = 1.0 + H33, phi = H33 * (2.0 + H33), f2 = f * f, i_f = 1.0 / f;
   Invariants v;
@@ -133,4 +133,10 @@ LAM_CLONES void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4],
       }
     LAM_EACH_POINT(g) out->A[r][4][g] = w_af[g] * F[r][g] + w_jf[g] * cof[r][g];
   }
+}
+
+void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
+                           LamKernel *out)
+{
+  MooneyRivlin(wall, H, H33, derivatives, out);
 }
