@@ -15,8 +15,7 @@
 #include <stdint.h>
 #include <petscmat.h>
 
-#define MOST_GROWTH                                                                                                    \
-  1e4 /* largest sum of |L| |D| |L|^T over the largest entry of K: rounding errors are this times eps */
+#define MOST_GROWTH 1e4 /* largest |L| |D| |L|^T over the diagonal of K: rounding errors are this times eps */
 #define MOST_PRODUCTS                                                                                                  \
   10000000                 /* of blocks; their places take 20 MB. With more MUMPS is as fast and needs less memory */
 #define LEAST_PER_BLOCK 50 /* products to expect of each block of unknowns: from 70 on one mesh to 1000 on patches */
@@ -326,11 +325,11 @@ typedef struct {
   double growth; /* largest diagonal entry of |L| |D| |L|^T */
 } Outcome;
 
-/* Adds rho V V^T, whose largest entry on the diagonal is that of K. */
-static void AddConstraints(LamLDL ldl)
+/* Adds rho V V^T, whose largest entry on the diagonal is that of K, `diagonal`. */
+static void AddConstraints(LamLDL ldl, PetscReal diagonal)
 {
   double *entries = (double *)ldl->factor;
-  PetscReal diagonal = 0.0, largest = 0.0;
+  PetscReal largest = 0.0;
 
   for (PetscInt h = ldl->positions; h < ldl->n; ++h) {
     Constraint *c = &ldl->constraint[h - ldl->positions];
@@ -343,7 +342,6 @@ static void AddConstraints(LamLDL ldl)
   }
   ldl->rho = 0.0;
   if (largest == 0.0) return;
-  for (PetscInt i = 0; i < ldl->positions; ++i) diagonal = PetscMax(diagonal, ldl->values[ldl->row[i]]);
   ldl->rho = diagonal / (largest * largest);
   for (PetscInt h = ldl->positions; h < ldl->n; ++h) {
     const Constraint *c = &ldl->constraint[h - ldl->positions];
@@ -354,7 +352,7 @@ static void AddConstraints(LamLDL ldl)
   }
 }
 
-LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most)
+LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most, PetscReal diagonal)
 {
   const PetscInt *start = ldl->start;
   const unsigned short *target = ldl->target;
@@ -364,7 +362,7 @@ LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most)
 
   for (PetscInt k = 0; k < start[ldl->blocks]; ++k) factor[k] = (Four){0.0};
   for (PetscInt k = 0; k < ldl->nonzeros; ++k) entries[ldl->to[k]] = ldl->values[k];
-  AddConstraints(ldl);
+  AddConstraints(ldl, diagonal);
   if (ldl->n % 2) entries[4 * start[ldl->place[ldl->blocks - 1]] + 3] = 1.0;
   for (PetscInt j = 0; j < ldl->blocks; ++j) {
     Four *column = factor + start[j], sum = {0.0};
@@ -406,13 +404,14 @@ LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most)
 
 PetscErrorCode LamLDLNumeric(LamLDL ldl, PetscInt most, PetscInt *negative, PetscBool *ok, PetscBool *unsure)
 {
-  const Outcome out = Factor(ldl, most);
-  PetscReal largest = 0.0;
+  PetscReal diagonal = 0.0; /* largest entry there */
+  Outcome out;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < ldl->nonzeros; ++k) largest = PetscMax(largest, PetscAbsReal(ldl->values[k]));
+  for (PetscInt i = 0; i < ldl->positions; ++i) diagonal = PetscMax(diagonal, PetscAbsReal(ldl->values[ldl->row[i]]));
+  out = Factor(ldl, most, diagonal);
   *negative = out.negative;
-  *unsure = (PetscBool)(out.growth > MOST_GROWTH * largest);
+  *unsure = (PetscBool)(out.growth > MOST_GROWTH * diagonal);
   *ok = (PetscBool)(out.ok && !*unsure);
   PetscFunctionReturn(0);
 }
