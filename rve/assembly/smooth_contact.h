@@ -19,9 +19,6 @@ typedef struct {
   PetscReal s, p, g, pp, pg, gg;
 } LamTouchStrength;
 
-#define LAM_BLOCK_NODES (2 * LAM_SPAN_NODES)
-#define LAM_BLOCK_DOFS (2 * LAM_BLOCK_NODES) /* 2 node + component */
-
 /* Sums over the points of one span against one other span, per strength and per F33. Nodes: those of the point's span,
    then those of the other one in its image. */
 typedef struct {
@@ -30,8 +27,9 @@ typedef struct {
   LamTouchStrength strength;
   PetscReal energy, energy_width; /* and its derivative with respect to the width */
   PetscReal f[LAM_BLOCK_DOFS], f_width[LAM_BLOCK_DOFS];
-  PetscReal K[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS];
-  PetscBool facing, lumen; /* the walls face each other in the undeformed tissue; they belong to a lumen */
+  PetscReal K[LAM_BLOCK_DOFS]
+             [LAM_BLOCK_DOFS]; /* LAM_TOUCH_WIDTH: all; else none of rows >= columns beyond the point's */
+  PetscBool facing, lumen;     /* the walls face each other in the undeformed tissue; they belong to a lumen */
   PetscInt loop, span, other, at;
 } LamTouchBlock;
 
