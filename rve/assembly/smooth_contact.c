@@ -298,24 +298,21 @@ static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt 
                         PetscBool *missing)
 {
   const PetscInt a = block->class[i], b = block->class[j];
-  const PetscInt low = PetscMin(a, b), high = PetscMax(a, b);
-  const PetscBool swap = (PetscBool)(a > b);
-  PetscInt first, second;
+  PetscInt first, entry[2][2];
 
-  if (low == 0) return;
-  first = LamLinearEntry(linear, LamUnknown(low, 0), LamUnknown(high, 0));
-  if (!LamLinearHas(linear, first, LamUnknown(low, 0), LamUnknown(high, 0))) {
+  if (a == 0 || b == 0) return;
+  first = LamLinearBlock(linear, a, b);
+  if (first < 0) {
     *missing = PETSC_TRUE;
     return;
   }
-  /* both rows of a class have the same columns but for the diagonal */
-  second = linear->row[LamUnknown(low, 1)] + (first - linear->row[LamUnknown(low, 0)]) - 1;
+  LamLinearEntries(linear, a, b, first, entry);
   for (PetscInt d = 0; d < 2; ++d)
     for (PetscInt e = a == b ? d : 0; e < 2; ++e) {
-      PetscReal value = swap ? block->K[2 * i + e][2 * j + d] : block->K[2 * i + d][2 * j + e];
+      PetscReal value = block->K[2 * i + d][2 * j + e];
 
       if (a == b && i != j) value += block->K[2 * i + e][2 * j + d];
-      linear->values[d == 0 ? first + e : second + e] += factor * value;
+      linear->values[entry[d][e]] += factor * value;
     }
 }
 
