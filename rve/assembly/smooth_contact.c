@@ -205,6 +205,9 @@ static PetscErrorCode CreateSystem(LamRVE rve, LamLinear *linear)
 /* Makes a system the one in use. */
 static void Use(LamRVE rve, PetscInt system)
 {
+  const LamSmooth *smooth = rve->smooth;
+
+  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.loops * smooth->walls.spans; ++k) smooth->entries[k].block[0] = -1;
   rve->linear = &rve->systems[system];
   LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
   LamForgetTangent(rve);
@@ -215,6 +218,7 @@ PetscErrorCode LamSmoothCreate(LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve->smooth));
   PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
+  PetscCall(PetscMalloc1(LAM_KEPT * rve->smooth->walls.loops * rve->smooth->walls.spans, &rve->smooth->entries));
   PetscCall(AddFacing(rve));
   rve->smooth->base_count = rve->smooth->count;
   PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));
@@ -229,6 +233,7 @@ PetscErrorCode LamSmoothDestroy(LamSmooth **smooth)
   if (!*smooth) PetscFunctionReturn(0);
   PetscCall(LamWallsDestroy(&(*smooth)->walls));
   PetscCall(PetscFree((*smooth)->pairs));
+  PetscCall(PetscFree((*smooth)->entries));
   PetscCall(PetscFree(*smooth));
   PetscFunctionReturn(0);
 }
@@ -293,19 +298,36 @@ typedef struct {
   PetscErrorCode error;
 } Assembly;
 
-/* Adds the 2 x 2 entries of nodes i and j of a block to the values. *missing: they are not in the pattern. */
-static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt i, PetscInt j, PetscReal factor,
-                        PetscBool *missing)
+/* Entries of all pairs of nodes of a block; NULL: not all are in the pattern. */
+static const PetscInt *FindEntries(LamRVE rve, const LamTouchBlock *block)
+{
+  const LamSmooth *smooth = rve->smooth;
+  const PetscInt span = block->loop * smooth->walls.spans + block->span;
+  const PetscInt name[4] = {block->loop, block->span, block->other, block->at};
+  LamBlockEntries *entries = &smooth->entries[LAM_KEPT * span + block->at % LAM_KEPT];
+  PetscInt pair = 0;
+
+  if (memcmp(entries->block, name, sizeof(name)) == 0) return entries->first;
+  entries->block[0] = -1;
+  for (PetscInt i = 0; i < LAM_BLOCK_NODES; ++i)
+    for (PetscInt j = i; j < LAM_BLOCK_NODES; ++j, ++pair) {
+      const PetscInt a = block->class[i], b = block->class[j];
+
+      entries->first[pair] = LamLinearBlock(rve->linear, a, b);
+      if (a != 0 && b != 0 && entries->first[pair] < 0) return NULL;
+    }
+  (void)PetscArraycpy(entries->block, name, 4);
+  return entries->first;
+}
+
+/* Adds the 2 x 2 entries of nodes i and j of a block to the values; first: that of their classes. */
+static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt i, PetscInt j, PetscInt first,
+                        PetscReal factor)
 {
   const PetscInt a = block->class[i], b = block->class[j];
-  PetscInt first, entry[2][2];
+  PetscInt entry[2][2];
 
-  if (a == 0 || b == 0) return;
-  first = LamLinearBlock(linear, a, b);
-  if (first < 0) {
-    *missing = PETSC_TRUE;
-    return;
-  }
+  if (first < 0) return;
   LamLinearEntries(linear, a, b, first, entry);
   for (PetscInt d = 0; d < 2; ++d)
     for (PetscInt e = a == b ? d : 0; e < 2; ++e) {
@@ -334,14 +356,13 @@ static void AddBlock(void *ctx, const LamTouchBlock *block)
 {
   Assembly *a = (Assembly *)ctx;
   const PetscReal factor = a->F33 * block->strength.s;
-  PetscBool missing = PETSC_FALSE;
+  const PetscInt *first = FindEntries(a->rve, block);
 
   a->energy += factor * block->energy;
   for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += factor * block->f[i];
-  for (PetscInt i = 0; i < LAM_BLOCK_NODES && !missing; ++i)
-    for (PetscInt j = i; j < LAM_BLOCK_NODES && !missing; ++j)
-      ScatterPair(a->rve->linear, block, i, j, factor, &missing);
-  if (!missing) return;
+  for (PetscInt i = 0; i < LAM_BLOCK_NODES && first; ++i)
+    for (PetscInt j = i; j < LAM_BLOCK_NODES; ++j) ScatterPair(a->rve->linear, block, i, j, *first++, factor);
+  if (first) return;
   a->missing = PETSC_TRUE;
   if (!a->error) a->error = Record(a->rve, block);
 }

@@ -41,12 +41,22 @@ typedef enum {
 } LamTouchWanted; /* and all before */
 typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
 
+#define LAM_KEPT 4 /* blocks of a span whose entries are kept: a wall meets one or two spans of another, or two walls  \
+                    */
+/* Where a block belongs in the matrix in use. */
+#define LAM_BLOCK_PAIRS (LAM_BLOCK_NODES * (LAM_BLOCK_NODES + 1) / 2)
+typedef struct {
+  PetscInt block[4];               /* loop, span, other and at; the first is -1 if nothing is kept */
+  PetscInt first[LAM_BLOCK_PAIRS]; /* of nodes i <= j, row by row: first entry of their classes, -1: prescribed */
+} LamBlockEntries;
+
 typedef struct {
   LamWalls walls;
-  PetscReal width;      /* apothems */
-  PetscInt base_count;  /* couplings of facing walls that have hardly slid, ... */
-  PetscInt count, room; /* ... and all at present, those of walls met since included */
-  PetscInt (*pairs)[2]; /* [count] classes */
+  PetscReal width;          /* apothems */
+  PetscInt base_count;      /* couplings of facing walls that have hardly slid, ... */
+  PetscInt count, room;     /* ... and all at present, those of walls met since included */
+  PetscInt (*pairs)[2];     /* [count] classes */
+  LamBlockEntries *entries; /* [loop][span][LAM_KEPT] of blocks met last */
 } LamSmooth;
 
 #endif
