@@ -301,26 +301,37 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
   }
 }
 
-static void VisitLoops(const Pair *p)
+/* The spans of two groups. */
+static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->spans;
+  const PetscInt n = walls->spans, end[2] = {PetscMin(n, GROUP * (a + 1)), PetscMin(n, GROUP * (b + 1))};
 
-  for (PetscInt i = 0; i < n; ++i) {
+  for (PetscInt i = GROUP * a; i < end[0]; ++i) {
     const LamBox *box = &walls->span[p->loop * n + i].box;
     const LamBox here = Moved(box, p->moved, 0.0), near = Moved(box, p->moved, p->reach);
 
-    if (!Meet(&near, &walls->box[p->other])) continue;
-    for (PetscInt g = 0; g < walls->groups; ++g) {
-      if (!Meet(&near, &walls->group[p->other * walls->groups + g])) continue;
-      for (PetscInt j = GROUP * g; j < PetscMin(n, GROUP * (g + 1)); ++j) {
-        const LamWallSpan *other = &walls->span[p->other * n + j];
+    if (!Meet(&near, &walls->group[p->other * walls->groups + b])) continue;
+    for (PetscInt j = GROUP * b; j < end[1]; ++j) {
+      const LamWallSpan *other = &walls->span[p->other * n + j];
 
-        if (Meet(&near, &other->box) && !IsBeyond(p, other, here.low, here.high) &&
-            !(p->itself && Between(n, i, j) < walls->apart))
-          VisitSpans(p, i, j);
-      }
+      if (!(p->itself && Between(n, i, j) < walls->apart) && Meet(&near, &other->box) &&
+          !IsBeyond(p, other, here.low, here.high))
+        VisitSpans(p, i, j);
     }
+  }
+}
+
+static void VisitLoops(const Pair *p)
+{
+  const LamWalls *walls = p->walls;
+
+  for (PetscInt a = 0; a < walls->groups; ++a) {
+    const LamBox near = Moved(&walls->group[p->loop * walls->groups + a], p->moved, p->reach);
+
+    if (!Meet(&near, &walls->box[p->other])) continue;
+    for (PetscInt b = 0; b < walls->groups; ++b)
+      if (Meet(&near, &walls->group[p->other * walls->groups + b])) VisitGroups(p, a, b);
   }
 }
 
