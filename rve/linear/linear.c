@@ -13,13 +13,6 @@ typedef struct {
   PetscInt64 *key;
 } Pairs;
 
-static int CompareKeys(const void *a, const void *b)
-{
-  const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
-
-  return x < y ? -1 : x > y;
-}
-
 static void AddCoupled(PetscInt a, PetscInt b, Pairs *pairs)
 {
   if (a > 0 && b > 0) pairs->key[pairs->count++] = (PetscInt64)PetscMin(a, b) * pairs->groups + PetscMax(a, b);
@@ -60,7 +53,7 @@ static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplin
   for (PetscInt i = 0; i < inner && lumens; ++i)
     AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + i / mesh->ring_nodes, pairs);
   for (PetscInt g = pairs->classes; g < pairs->groups; ++g) AddCoupled(g, g, pairs);
-  qsort(pairs->key, (size_t)pairs->count, sizeof(*pairs->key), CompareKeys);
+  PetscCall(PetscSortInt64(pairs->count, pairs->key));
   for (PetscInt k = 0; k < pairs->count; ++k)
     if (k == 0 || pairs->key[k] != pairs->key[k - 1]) pairs->key[unique++] = pairs->key[k];
   pairs->count = unique;
