@@ -16,7 +16,6 @@ typedef struct {
   LamRVE rve;
   const LamLoad *load;
   LamTouchWanted wanted;
-  PetscReal f[LAM_TOUCH_DOFS], f_width[LAM_TOUCH_DOFS], K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS]; /* of control points */
   LamTouchBlock block;
   PetscBool open; /* block holds a sum that has not been passed on */
   LamTouchBlockVisitor visitor;
@@ -50,9 +49,9 @@ static void OpenBlock(Sum *sum, const LamTouching *touch)
   sum->open = PETSC_TRUE;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
   block->facing = LamTouchIsFacing(walls, touch);
-  (void)PetscArrayzero(sum->f, LAM_TOUCH_DOFS);
-  (void)PetscArrayzero(sum->f_width, LAM_TOUCH_DOFS);
-  (void)PetscMemzero(sum->K, sizeof(sum->K));
+  (void)PetscArrayzero(block->f, LAM_BLOCK_DOFS);
+  (void)PetscArrayzero(block->f_width, LAM_BLOCK_DOFS);
+  (void)PetscMemzero(block->K, sizeof(block->K));
   for (PetscInt k = 0; k < LAM_BLOCK_NODES; ++k) {
     const PetscBool own = (PetscBool)(k < LAM_SPAN_NODES);
     const PetscInt node =
@@ -63,48 +62,44 @@ static void OpenBlock(Sum *sum, const LamTouching *touch)
   }
 }
 
-/* Forces on nodes from those on control points. */
-static void PassForces(const PetscReal (*const share[2])[LAM_SPAN_NODES], const PetscReal from[LAM_TOUCH_DOFS],
-                       PetscInt stride, PetscReal to[LAM_BLOCK_DOFS])
-{
-  (void)PetscArrayzero(to, LAM_BLOCK_DOFS);
-  for (PetscInt a = 0; a < 2 * LAM_SPAN; ++a)
-    for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) {
-      const PetscReal s = share[a / LAM_SPAN][a % LAM_SPAN][i];
-      PetscReal *at = &to[2 * (LAM_SPAN_NODES * (a / LAM_SPAN) + i)];
-
-      for (PetscInt d = 0; d < 2; ++d) at[d] += s * from[(2 * a + d) * stride];
-    }
-}
-
 static void CloseBlock(Sum *sum)
 {
-  const LamWalls *walls = &sum->rve->smooth->walls;
   LamTouchBlock *block = &sum->block;
-  const PetscReal(*const share[2])[LAM_SPAN_NODES] = {walls->of[block->span].share, walls->of[block->at].share};
-  PetscReal half[LAM_BLOCK_DOFS][LAM_TOUCH_DOFS];
 
   if (!sum->open) return;
   sum->open = PETSC_FALSE;
-  if (sum->wanted != LAM_TOUCH_ENERGY) PassForces(share, sum->f, 1, block->f);
-  if (sum->wanted == LAM_TOUCH_WIDTH) PassForces(share, sum->f_width, 1, block->f_width);
-  if (sum->wanted >= LAM_TOUCH_TANGENT) {
-    for (PetscInt j = 0; j < LAM_TOUCH_DOFS; ++j) {
-      PetscReal column[LAM_BLOCK_DOFS];
-
-      PassForces(share, &sum->K[0][j], LAM_TOUCH_DOFS, column);
-      for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) half[i][j] = column[i];
-    }
-    for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) PassForces(share, half[i], 1, block->K[i]);
-  }
+  for (PetscInt i = LAM_BLOCK_DOFS / 2; i < LAM_BLOCK_DOFS && sum->wanted == LAM_TOUCH_WIDTH; ++i)
+    for (PetscInt j = 0; j < LAM_BLOCK_DOFS / 2; ++j) block->K[i][j] = block->K[j][i];
   sum->visitor(sum->ctx, block);
+}
+
+/* Dependence of a touching point and of the closest point on the nodes of the block. */
+static void WeighNodes(const LamWalls *walls, const LamTouching *touch, LamTouchWeights *weights)
+{
+  const PetscReal(*share)[LAM_SPAN_NODES] = walls->of[touch->at].share;
+  LamSplineWeights spline;
+
+  LamSplineWeightsAt(touch->gap.t, &spline);
+  for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) {
+    PetscReal N = 0.0, dN = 0.0;
+
+    for (PetscInt a = 0; a < LAM_SPAN; ++a) {
+      N += spline.N[a] * share[a][i];
+      dN += spline.dN[a] * share[a][i];
+    }
+    weights->N[i] = walls->of[touch->span].point[touch->point][i];
+    weights->dN[i] = 0.0;
+    weights->N[LAM_SPAN_NODES + i] = -N;
+    weights->dN[LAM_SPAN_NODES + i] = dN;
+  }
 }
 
 static void AddTouch(void *ctx, const LamTouching *touch)
 {
   Sum *sum = (Sum *)ctx;
   LamTouchBlock *block = &sum->block;
-  const PetscReal *N = sum->rve->smooth->walls.at[touch->point].N, half = 0.5 * touch->weight;
+  const PetscReal half = 0.5 * touch->weight;
+  LamTouchWeights weights;
   LamTouchLaw law;
 
   if (sum->open && (block->loop != touch->loop || block->span != touch->span || block->other != touch->other ||
@@ -114,11 +109,12 @@ static void AddTouch(void *ctx, const LamTouching *touch)
   LamTouchLawEvaluate(touch->gap.gap, sum->rve->smooth->width, &law);
   block->energy += half * law.phi;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
-  LamTouchAddVariation(&touch->gap, N, half * law.d, half * law.dd, sum->f,
-                       sum->wanted == LAM_TOUCH_FORCE ? NULL : sum->K);
+  WeighNodes(&sum->rve->smooth->walls, touch, &weights);
+  LamTouchAddVariation(&touch->gap, &weights, half * law.d, half * law.dd, block->f,
+                       sum->wanted == LAM_TOUCH_FORCE ? NULL : block->K);
   if (sum->wanted != LAM_TOUCH_WIDTH) return;
   block->energy_width += half * law.phi_width;
-  LamTouchAddVariation(&touch->gap, N, half * law.d_width, 0.0, sum->f_width, NULL);
+  LamTouchAddVariation(&touch->gap, &weights, half * law.d_width, 0.0, block->f_width, NULL);
 }
 
 void LamSmoothVisit(LamRVE rve, const LamLoad *load, const PetscReal y[], LamTouchWanted wanted,
@@ -209,6 +205,9 @@ static PetscErrorCode CreateSystem(LamRVE rve, LamLinear *linear)
 /* Makes a system the one in use. */
 static void Use(LamRVE rve, PetscInt system)
 {
+  const LamSmooth *smooth = rve->smooth;
+
+  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.loops * smooth->walls.spans; ++k) smooth->entries[k].block[0] = -1;
   rve->linear = &rve->systems[system];
   LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
   LamForgetTangent(rve);
@@ -219,6 +218,7 @@ PetscErrorCode LamSmoothCreate(LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve->smooth));
   PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
+  PetscCall(PetscMalloc1(LAM_KEPT * rve->smooth->walls.loops * rve->smooth->walls.spans, &rve->smooth->entries));
   PetscCall(AddFacing(rve));
   rve->smooth->base_count = rve->smooth->count;
   PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));
@@ -233,6 +233,7 @@ PetscErrorCode LamSmoothDestroy(LamSmooth **smooth)
   if (!*smooth) PetscFunctionReturn(0);
   PetscCall(LamWallsDestroy(&(*smooth)->walls));
   PetscCall(PetscFree((*smooth)->pairs));
+  PetscCall(PetscFree((*smooth)->entries));
   PetscCall(PetscFree(*smooth));
   PetscFunctionReturn(0);
 }
@@ -297,29 +298,43 @@ typedef struct {
   PetscErrorCode error;
 } Assembly;
 
-/* Adds the 2 x 2 entries of nodes i and j of a block to the values. *missing: they are not in the pattern. */
-static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt i, PetscInt j, PetscReal factor,
-                        PetscBool *missing)
+/* Entries of all pairs of nodes of a block; NULL: not all are in the pattern. */
+static const PetscInt *FindEntries(LamRVE rve, const LamTouchBlock *block)
+{
+  const LamSmooth *smooth = rve->smooth;
+  const PetscInt span = block->loop * smooth->walls.spans + block->span;
+  const PetscInt name[4] = {block->loop, block->span, block->other, block->at};
+  LamBlockEntries *entries = &smooth->entries[LAM_KEPT * span + block->at % LAM_KEPT];
+  PetscInt pair = 0;
+
+  if (memcmp(entries->block, name, sizeof(name)) == 0) return entries->first;
+  entries->block[0] = -1;
+  for (PetscInt i = 0; i < LAM_BLOCK_NODES; ++i)
+    for (PetscInt j = i; j < LAM_BLOCK_NODES; ++j, ++pair) {
+      const PetscInt a = block->class[i], b = block->class[j];
+
+      entries->first[pair] = LamLinearBlock(rve->linear, a, b);
+      if (a != 0 && b != 0 && entries->first[pair] < 0) return NULL;
+    }
+  (void)PetscArraycpy(entries->block, name, 4);
+  return entries->first;
+}
+
+/* Adds the 2 x 2 entries of nodes i and j of a block to the values; first: that of their classes. */
+static void ScatterPair(LamLinear *linear, const LamTouchBlock *block, PetscInt i, PetscInt j, PetscInt first,
+                        PetscReal factor)
 {
   const PetscInt a = block->class[i], b = block->class[j];
-  const PetscInt low = PetscMin(a, b), high = PetscMax(a, b);
-  const PetscBool swap = (PetscBool)(a > b);
-  PetscInt first, second;
+  PetscInt entry[2][2];
 
-  if (low == 0) return;
-  first = LamLinearEntry(linear, LamUnknown(low, 0), LamUnknown(high, 0));
-  if (!LamLinearHas(linear, first, LamUnknown(low, 0), LamUnknown(high, 0))) {
-    *missing = PETSC_TRUE;
-    return;
-  }
-  /* both rows of a class have the same columns but for the diagonal */
-  second = linear->row[LamUnknown(low, 1)] + (first - linear->row[LamUnknown(low, 0)]) - 1;
+  if (first < 0) return;
+  LamLinearEntries(linear, a, b, first, entry);
   for (PetscInt d = 0; d < 2; ++d)
     for (PetscInt e = a == b ? d : 0; e < 2; ++e) {
-      PetscReal value = swap ? block->K[2 * j + d][2 * i + e] : block->K[2 * i + d][2 * j + e];
+      PetscReal value = block->K[2 * i + d][2 * j + e];
 
-      if (a == b && i != j) value += block->K[2 * j + d][2 * i + e];
-      linear->values[d == 0 ? first + e : second + e] += factor * value;
+      if (a == b && i != j) value += block->K[2 * i + e][2 * j + d];
+      linear->values[entry[d][e]] += factor * value;
     }
 }
 
@@ -341,14 +356,13 @@ static void AddBlock(void *ctx, const LamTouchBlock *block)
 {
   Assembly *a = (Assembly *)ctx;
   const PetscReal factor = a->F33 * block->strength.s;
-  PetscBool missing = PETSC_FALSE;
+  const PetscInt *first = FindEntries(a->rve, block);
 
   a->energy += factor * block->energy;
   for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += factor * block->f[i];
-  for (PetscInt i = 0; i < LAM_BLOCK_NODES && !missing; ++i)
-    for (PetscInt j = i; j < LAM_BLOCK_NODES && !missing; ++j)
-      ScatterPair(a->rve->linear, block, i, j, factor, &missing);
-  if (!missing) return;
+  for (PetscInt i = 0; i < LAM_BLOCK_NODES && first; ++i)
+    for (PetscInt j = i; j < LAM_BLOCK_NODES; ++j) ScatterPair(a->rve->linear, block, i, j, *first++, factor);
+  if (first) return;
   a->missing = PETSC_TRUE;
   if (!a->error) a->error = Record(a->rve, block);
 }

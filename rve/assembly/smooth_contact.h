@@ -19,9 +19,6 @@ typedef struct {
   PetscReal s, p, g, pp, pg, gg;
 } LamTouchStrength;
 
-#define LAM_BLOCK_NODES (2 * LAM_SPAN_NODES)
-#define LAM_BLOCK_DOFS (2 * LAM_BLOCK_NODES) /* 2 node + component */
-
 /* Sums over the points of one span against one other span, per strength and per F33. Nodes: those of the point's span,
    then those of the other one in its image. */
 typedef struct {
@@ -30,8 +27,9 @@ typedef struct {
   LamTouchStrength strength;
   PetscReal energy, energy_width; /* and its derivative with respect to the width */
   PetscReal f[LAM_BLOCK_DOFS], f_width[LAM_BLOCK_DOFS];
-  PetscReal K[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS];
-  PetscBool facing, lumen; /* the walls face each other in the undeformed tissue; they belong to a lumen */
+  PetscReal K[LAM_BLOCK_DOFS]
+             [LAM_BLOCK_DOFS]; /* LAM_TOUCH_WIDTH: all; else none of rows >= columns beyond the point's */
+  PetscBool facing, lumen;     /* the walls face each other in the undeformed tissue; they belong to a lumen */
   PetscInt loop, span, other, at;
 } LamTouchBlock;
 
@@ -43,12 +41,22 @@ typedef enum {
 } LamTouchWanted; /* and all before */
 typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
 
+#define LAM_KEPT 4 /* blocks of a span whose entries are kept: a wall meets one or two spans of another, or two walls  \
+                    */
+/* Where a block belongs in the matrix in use. */
+#define LAM_BLOCK_PAIRS (LAM_BLOCK_NODES * (LAM_BLOCK_NODES + 1) / 2)
+typedef struct {
+  PetscInt block[4];               /* loop, span, other and at; the first is -1 if nothing is kept */
+  PetscInt first[LAM_BLOCK_PAIRS]; /* of nodes i <= j, row by row: first entry of their classes, -1: prescribed */
+} LamBlockEntries;
+
 typedef struct {
   LamWalls walls;
-  PetscReal width;      /* apothems */
-  PetscInt base_count;  /* couplings of facing walls that have hardly slid, ... */
-  PetscInt count, room; /* ... and all at present, those of walls met since included */
-  PetscInt (*pairs)[2]; /* [count] classes */
+  PetscReal width;          /* apothems */
+  PetscInt base_count;      /* couplings of facing walls that have hardly slid, ... */
+  PetscInt count, room;     /* ... and all at present, those of walls met since included */
+  PetscInt (*pairs)[2];     /* [count] classes */
+  LamBlockEntries *entries; /* [loop][span][LAM_KEPT] of blocks met last */
 } LamSmooth;
 
 #endif

@@ -2,10 +2,11 @@
 
 #define LEAST_H 0.05 /* of m: bounds d2(gap) where a wall is bent as sharply as a point lies deep in it */
 #define ROOT_STEPS 60
+#define ROOT_STEP 1e-8 /* of t: Newton's method leaves an error of its square, below rounding */
 
 void LamTouchLawEvaluate(PetscReal gap, PetscReal width, LamTouchLaw *law)
 {
-  const PetscReal x = gap / width, e = PetscExpReal(-2.0 * PetscMax(x, -LAM_SOFT_WIDTHS)), rest = 1.0 - x;
+  const PetscReal x = gap / width, rest = 1.0 - x;
   PetscReal f, t, dt; /* phi / (s w) = f(x), t / s = -f', dt = -t' = f'' */
 
   if (x >= 1.0) {
@@ -15,6 +16,7 @@ void LamTouchLawEvaluate(PetscReal gap, PetscReal width, LamTouchLaw *law)
     t = rest * rest;
     dt = 2.0 * rest;
   } else {
+    const PetscReal e = PetscExpReal(-2.0 * PetscMax(x, -LAM_SOFT_WIDTHS));
     const PetscReal deeper = PetscMax(0.0, -LAM_SOFT_WIDTHS - x);
 
     f = 1.0 / 3.0 + 0.5 * (e - 1.0) + e * (deeper + deeper * deeper);
@@ -51,43 +53,56 @@ static inline PetscReal Dot(const PetscReal a[2], const PetscReal b[2])
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/* Newton's method on (X - y).tau = 0, safeguarded by bisection. */
-PetscReal LamSplineClosest(const PetscReal c[LAM_SPAN][2], const PetscReal X[2])
+void LamSplineCurveOf(const PetscReal c[LAM_SPAN][2], LamSplineCurve *curve)
 {
-  PetscReal low = 0.0, high = 1.0, t = 0.5;
+  for (PetscInt d = 0; d < 2; ++d) {
+    curve->a[0][d] = (c[0][d] + 4.0 * c[1][d] + c[2][d]) / 6.0;
+    curve->a[1][d] = (c[2][d] - c[0][d]) / 2.0;
+    curve->a[2][d] = (c[0][d] - 2.0 * c[1][d] + c[2][d]) / 2.0;
+    curve->a[3][d] = (c[3][d] - c[0][d] + 3.0 * (c[1][d] - c[2][d])) / 6.0;
+  }
+}
 
+/* (X - y).tau, and its slope. */
+static inline PetscReal Along(const LamSplineCurve *curve, const PetscReal X[2], PetscReal t, PetscReal *slope)
+{
+  PetscReal y[2], tau[2], bend[2];
+
+  LamSplineAt(curve, t, y, tau, bend);
+
+  const PetscReal z[2] = {X[0] - y[0], X[1] - y[1]};
+
+  *slope = Dot(z, bend) - Dot(tau, tau);
+  return Dot(z, tau);
+}
+
+/* Newton's method on (X - y).tau = 0 from the zero of its chord, safeguarded by bisection. */
+PetscReal LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2])
+{
+  PetscReal low = 0.0, high = 1.0, slope, t;
+  const PetscReal start = Along(curve, X, 0.0, &slope), end = Along(curve, X, 1.0, &slope);
+
+  t = PetscMax(0.0, PetscMin(1.0, start / (start - end)));
   for (PetscInt k = 0; k < ROOT_STEPS; ++k) {
-    LamSplineWeights w;
-    PetscReal y[2], tau[2], bend[2], next;
-
-    LamSplineWeightsAt(t, &w);
-    LamSplineSum(w.N, c, y);
-    LamSplineSum(w.dN, c, tau);
-    LamSplineSum(w.ddN, c, bend);
-
-    const PetscReal z[2] = {X[0] - y[0], X[1] - y[1]};
-    const PetscReal value = Dot(z, tau), slope = Dot(z, bend) - Dot(tau, tau);
+    const PetscReal value = Along(curve, X, t, &slope), before = t;
 
     if (value > 0.0)
       low = t;
     else
       high = t;
-    next = t - value / slope;
-    if (!(slope < 0.0 && next >= low && next <= high)) next = 0.5 * (low + high);
-    if (PetscAbsReal(next - t) <= 2.0 * PETSC_MACHINE_EPSILON) return next;
-    t = next;
+    t -= value / slope;
+    if (!(slope < 0.0 && t >= low && t <= high)) t = 0.5 * (low + high);
+    if (PetscAbsReal(t - before) <= ROOT_STEP) break;
   }
   return t;
 }
 
-void LamTouchGapAt(const PetscReal c[LAM_SPAN][2], const PetscReal X[2], PetscReal t, LamTouchGap *gap)
+void LamTouchGapAt(const LamSplineCurve *curve, const PetscReal X[2], PetscReal t, LamTouchGap *gap)
 {
   PetscReal y[2], bend[2], length;
 
-  LamSplineWeightsAt(t, &gap->master);
-  LamSplineSum(gap->master.N, c, y);
-  LamSplineSum(gap->master.dN, c, gap->tangent);
-  LamSplineSum(gap->master.ddN, c, bend);
+  LamSplineAt(curve, t, y, gap->tangent, bend);
+  gap->t = t;
   gap->m = Dot(gap->tangent, gap->tangent);
   length = PetscSqrtReal(gap->m);
   gap->normal[0] = gap->tangent[1] / length;
@@ -97,30 +112,35 @@ void LamTouchGapAt(const PetscReal c[LAM_SPAN][2], const PetscReal X[2], PetscRe
   gap->H = PetscMax(gap->m - gap->gap * gap->b, LEAST_H * gap->m);
 }
 
-/* d2(gap) = -(N0 T + T N0 + gap N0 N0 + (b/m) T T) / H with N = n.(dX - dy), T = tau.(dX - dy), N0 = n.dy_u. */
-void LamTouchAddVariation(const LamTouchGap *gap, const PetscReal slave[LAM_SPAN], PetscReal factor1, PetscReal factor2,
-                          PetscReal f[LAM_TOUCH_DOFS], PetscReal K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS])
+/*
+  d2(gap) = -(N0 T + T N0 + gap N0 N0 + (b/m) T T) / H with N = n.(dX - dy), T = tau.(dX - dy), N0 = n.dy_u. For nodes i
+  and j, components d and e, that is
+    N_i N_j A_de + dN_i N_j B_de + N_i dN_j B_ed + dN_i dN_j C_de,
+  A = factor2 n n - over b/m tau tau, B = -over n tau, C = -over gap n n, over = factor1/H.
+*/
+void LamTouchAddVariation(const LamTouchGap *gap, const LamTouchWeights *weights, PetscReal factor1, PetscReal factor2,
+                          PetscReal f[LAM_BLOCK_DOFS], PetscReal K[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS])
 {
-  const PetscReal over = factor1 / gap->H;
-  PetscReal N[LAM_TOUCH_DOFS], T[LAM_TOUCH_DOFS], N0[LAM_TOUCH_DOFS];
+  const PetscReal over = factor1 / gap->H, *n = gap->normal, *tau = gap->tangent, *N = weights->N, *dN = weights->dN;
 
-  for (PetscInt a = 0; a < LAM_SPAN; ++a)
-    for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt s = 2 * a + d, m = 2 * (LAM_SPAN + a) + d;
-
-      N[s] = slave[a] * gap->normal[d];
-      T[s] = slave[a] * gap->tangent[d];
-      N0[s] = 0.0;
-      N[m] = -gap->master.N[a] * gap->normal[d];
-      T[m] = -gap->master.N[a] * gap->tangent[d];
-      N0[m] = gap->master.dN[a] * gap->normal[d];
-    }
-  for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) f[i] += factor1 * N[i];
+  for (PetscInt i = 0; i < LAM_BLOCK_DOFS; ++i) f[i] += factor1 * N[i / 2] * n[i % 2];
   if (!K) return;
-  for (PetscInt i = 0; i < LAM_TOUCH_DOFS; ++i) {
-    const PetscReal n = factor2 * N[i], n0 = -over * (T[i] + gap->gap * N0[i]);
-    const PetscReal t = -over * (N0[i] + gap->b / gap->m * T[i]);
+  for (PetscInt d = 0; d < 2; ++d) {
+    PetscReal by_N[LAM_BLOCK_DOFS], by_dN[LAM_BLOCK_DOFS]; /* factors of N_i and dN_i */
 
-    for (PetscInt j = 0; j < LAM_TOUCH_DOFS; ++j) K[i][j] += n * N[j] + n0 * N0[j] + t * T[j];
+    for (PetscInt e = 0; e < 2; ++e) {
+      const PetscReal A = factor2 * n[d] * n[e] - over * gap->b / gap->m * tau[d] * tau[e];
+      const PetscReal B = -over * n[d] * tau[e], Bt = -over * n[e] * tau[d], C = -over * gap->gap * n[d] * n[e];
+
+      for (PetscInt j = 0; j < LAM_BLOCK_NODES; ++j) {
+        by_N[2 * j + e] = A * N[j] + Bt * dN[j];
+        by_dN[2 * j + e] = B * N[j] + C * dN[j];
+      }
+    }
+    for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i)
+      for (PetscInt j = 0; j < LAM_BLOCK_DOFS; ++j) K[2 * i + d][j] += N[i] * by_N[j];
+    for (PetscInt i = LAM_SPAN_NODES; i < LAM_BLOCK_NODES; ++i)
+      for (PetscInt j = 2 * LAM_SPAN_NODES; j < LAM_BLOCK_DOFS; ++j)
+        K[2 * i + d][j] += N[i] * by_N[j] + dN[i] * by_dN[j];
   }
 }

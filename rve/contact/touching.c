@@ -3,6 +3,7 @@
 #define WIDE 0.02      /* apothems: width of a law that needs rounder corners to pass them, ... */
 #define WIDE_BEVEL 0.1 /* ... in spans; rounder ones of turgid cells bear too little */
 #define DEEPEST 0.25   /* apothems: deeper points belong to another wall; above the longest step of the solver */
+#define GROUP 8        /* spans with a common box: about the root of their number on the default mesh */
 
 static void ListNodes(const LamMesh *mesh, LamWalls *walls)
 {
@@ -42,7 +43,12 @@ static void ShareNodes(LamWalls *walls)
 
     start = 2 * walls->mesh->along * start + half;
     of->first = (start - 2 + start % 2 + walls->nodes) % walls->nodes;
-    for (PetscInt a = 0; a < LAM_SPAN; ++a) ShareControl(walls, span + a - 1, of->first, of->share[a]);
+    (void)PetscMemzero(of->point, sizeof(of->point));
+    for (PetscInt a = 0; a < LAM_SPAN; ++a) {
+      ShareControl(walls, span + a - 1, of->first, of->share[a]);
+      for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
+        for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) of->point[q][i] += walls->at[q].N[a] * of->share[a][i];
+    }
   }
 }
 
@@ -82,11 +88,11 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
   walls->spans = walls->nodes + LAM_FACES;
   walls->is_patch = micro->is_patch;
   walls->apart = PetscMax(3, mesh->along);
+  walls->groups = (walls->spans + GROUP - 1) / GROUP;
   all = walls->loops * walls->spans;
   PetscCall(PetscMalloc5(walls->loops * walls->nodes, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight,
                          mesh->cell_count, &walls->thickness, all, &walls->x, walls->spans, &walls->of));
-  PetscCall(PetscMalloc5(LAM_TOUCH_POINTS * all, &walls->point, all, &walls->knot, all, &walls->tau, walls->loops,
-                         &walls->box, all, &walls->hull));
+  PetscCall(PetscMalloc3(all, &walls->span, walls->loops, &walls->box, walls->loops * walls->groups, &walls->group));
   for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = PetscMin(DEEPEST, LamWallThickness(micro, c));
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineWeightsAt(((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, &walls->at[q]);
@@ -100,22 +106,31 @@ PetscErrorCode LamWallsDestroy(LamWalls *walls)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(walls->node, walls->weight, walls->thickness, walls->x, walls->of));
-  PetscCall(PetscFree5(walls->point, walls->knot, walls->tau, walls->box, walls->hull));
+  PetscCall(PetscFree3(walls->span, walls->box, walls->group));
   PetscFunctionReturn(0);
 }
 
-static void Widen(LamBox *box, const PetscReal x[2])
+static const LamBox nothing = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
+
+static void Widen(LamBox *box, const PetscReal low[2], const PetscReal high[2])
 {
   for (PetscInt d = 0; d < 2; ++d) {
-    box->low[d] = PetscMin(box->low[d], x[d]);
-    box->high[d] = PetscMax(box->high[d], x[d]);
+    box->low[d] = PetscMin(box->low[d], low[d]);
+    box->high[d] = PetscMax(box->high[d], high[d]);
   }
 }
 
-static inline PetscBool AreNear(const LamBox *a, const LamBox *b, const PetscReal shift[2], PetscReal reach)
+/* The box moved by -shift, with a margin. */
+static LamBox Moved(const LamBox *box, const PetscReal shift[2], PetscReal margin)
 {
-  return (PetscBool)(a->low[0] <= b->high[0] + shift[0] + reach && b->low[0] + shift[0] <= a->high[0] + reach &&
-                     a->low[1] <= b->high[1] + shift[1] + reach && b->low[1] + shift[1] <= a->high[1] + reach);
+  return (LamBox){{box->low[0] - shift[0] - margin, box->low[1] - shift[1] - margin},
+                  {box->high[0] - shift[0] + margin, box->high[1] - shift[1] + margin}};
+}
+
+static inline PetscBool Meet(const LamBox *a, const LamBox *b)
+{
+  return (PetscBool)(a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
+                     b->low[1] <= a->high[1]);
 }
 
 static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
@@ -148,33 +163,59 @@ static void PlaceControl(const LamWalls *walls, const PetscReal F[9], const Pets
   }
 }
 
+/* Box, normal and top of a span from its Bezier points, between which it lies. */
+static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
+{
+  PetscReal p[LAM_SPAN][2], length, leg[LAM_SPAN - 1];
+
+  for (PetscInt d = 0; d < 2; ++d) {
+    p[0][d] = (c[0][d] + 4.0 * c[1][d] + c[2][d]) / 6.0;
+    p[1][d] = (2.0 * c[1][d] + c[2][d]) / 3.0;
+    p[2][d] = (c[1][d] + 2.0 * c[2][d]) / 3.0;
+    p[3][d] = (c[1][d] + 4.0 * c[2][d] + c[3][d]) / 6.0;
+  }
+  span->box = nothing;
+  for (PetscInt a = 0; a < LAM_SPAN; ++a) Widen(&span->box, p[a], p[a]);
+
+  const PetscReal chord[2] = {p[3][0] - p[0][0], p[3][1] - p[0][1]};
+
+  for (PetscInt a = 0; a < LAM_SPAN - 1; ++a)
+    leg[a] = (p[a + 1][0] - p[a][0]) * chord[0] + (p[a + 1][1] - p[a][1]) * chord[1];
+  span->outward[0] = span->outward[1] = 0.0;
+  span->top = PETSC_MAX_REAL;
+  if (!(leg[0] > 0.0 && leg[1] >= 0.0 && leg[2] > 0.0)) return;
+  length = PetscSqrtReal(chord[0] * chord[0] + chord[1] * chord[1]);
+  span->outward[0] = chord[1] / length;
+  span->outward[1] = -chord[0] / length;
+  span->top = -PETSC_MAX_REAL;
+  for (PetscInt a = 0; a < LAM_SPAN; ++a)
+    span->top = PetscMax(span->top, span->outward[0] * p[a][0] + span->outward[1] * p[a][1]);
+}
+
+static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
+{
+  LamWallSpan *span = &walls->span[loop * walls->spans + i];
+  LamBox *group = &walls->group[loop * walls->groups + i / GROUP];
+  PetscReal c[LAM_SPAN][2];
+
+  GatherSpan(walls, loop, i, c);
+  LamSplineCurveOf((const PetscReal(*)[2])c, &span->curve);
+  Bound((const PetscReal(*)[2])c, span);
+  for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
+    LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, span->point[q]);
+  if (i % GROUP == 0) *group = nothing;
+  Widen(group, span->box.low, span->box.high);
+}
+
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
 {
-  static const LamBox nothing = {{PETSC_MAX_REAL, PETSC_MAX_REAL}, {-PETSC_MAX_REAL, -PETSC_MAX_REAL}};
-  LamSplineWeights start;
-
-  LamSplineWeightsAt(0.0, &start);
   (void)PetscArraycpy(walls->F, F, 9);
   for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    for (PetscInt i = 0; i < walls->spans; ++i) PlaceControl(walls, F, y, loop, i, walls->x[loop * walls->spans + i]);
+    for (PetscInt i = 0; i < walls->spans; ++i) PlaceSpan(walls, loop, i);
     walls->box[loop] = nothing;
-    for (PetscInt i = 0; i < walls->spans; ++i) {
-      const PetscInt k = loop * walls->spans + i;
-
-      PlaceControl(walls, F, y, loop, i, walls->x[k]);
-      Widen(&walls->box[loop], walls->x[k]);
-    }
-    for (PetscInt i = 0; i < walls->spans; ++i) {
-      const PetscInt k = loop * walls->spans + i;
-      PetscReal c[LAM_SPAN][2];
-
-      GatherSpan(walls, loop, i, c);
-      walls->hull[k] = nothing;
-      for (PetscInt a = 0; a < LAM_SPAN; ++a) Widen(&walls->hull[k], c[a]);
-      LamSplineSum(start.N, (const PetscReal(*)[2])c, walls->knot[k]);
-      LamSplineSum(start.dN, (const PetscReal(*)[2])c, walls->tau[k]);
-      for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
-        LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, walls->point[LAM_TOUCH_POINTS * k + q]);
-    }
+    for (PetscInt g = loop * walls->groups; g < (loop + 1) * walls->groups; ++g)
+      Widen(&walls->box[loop], walls->group[g].low, walls->group[g].high);
   }
 }
 
@@ -198,44 +239,56 @@ static inline PetscInt Between(PetscInt spans, PetscInt i, PetscInt j)
 }
 
 /* Whether the normals of a point's own wall and of the one that it is near to are opposed. */
-static PetscBool AreOpposed(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt q, const LamTouchGap *gap)
+static PetscBool AreOpposed(const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
 {
-  PetscReal c[LAM_SPAN][2], tau[2];
+  PetscReal y[2], tau[2], bend[2];
 
-  GatherSpan(walls, loop, span, c);
-  LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
+  LamSplineAt(&own->curve, ((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, y, tau, bend);
   return (PetscBool)(tau[1] * gap->normal[0] - tau[0] * gap->normal[1] < 0.0);
 }
 
 /* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
    same cell; in another cell it may have come through from the opposite wall, whose normal is then not opposed. */
-static PetscBool Counts(const Pair *p, PetscInt span, PetscInt q, const LamTouchGap *gap)
+static PetscBool Counts(const Pair *p, const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
 {
   if (!(gap->gap < p->width)) return PETSC_FALSE;
   if (gap->gap >= -p->walls->thickness[p->other / 2]) return PETSC_TRUE;
-  return (PetscBool)(!p->itself && gap->gap >= -DEEPEST && AreOpposed(p->walls, p->loop, span, q, gap));
+  return (PetscBool)(!p->itself && gap->gap >= -DEEPEST && AreOpposed(own, q, gap));
+}
+
+/* Whether all of a box is farther outside a span than the width. */
+static inline PetscBool IsBeyond(const Pair *p, const LamWallSpan *span, const PetscReal low[2],
+                                 const PetscReal high[2])
+{
+  PetscReal least = -span->top;
+
+  for (PetscInt d = 0; d < 2; ++d) least += span->outward[d] * (span->outward[d] > 0.0 ? low[d] : high[d]);
+  return (PetscBool)(least > p->width);
+}
+
+/* (X - y).tau at the start of a span. */
+static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2])
+{
+  const PetscReal(*a)[2] = (const PetscReal(*)[2])span->curve.a;
+
+  return (X[0] - a[0][0]) * a[1][0] + (X[1] - a[0][1]) * a[1][1];
 }
 
 /* Points of one span against one span of the other loop. */
 static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->spans, k = p->other * n + j, next = p->other * n + (j + 1 == n ? 0 : j + 1);
-  PetscReal c[LAM_SPAN][2];
-  PetscBool gathered = PETSC_FALSE;
+  const PetscInt n = walls->spans;
+  const LamWallSpan *own = &walls->span[p->loop * n + i], *other = &walls->span[p->other * n + j];
+  const LamWallSpan *next = j + 1 == n ? &walls->span[p->other * n] : other + 1;
   LamTouching touch;
 
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
-    const PetscInt at = LAM_TOUCH_POINTS * (p->loop * n + i) + q;
-    const PetscReal X[2] = {walls->point[at][0] - p->moved[0], walls->point[at][1] - p->moved[1]};
+    const PetscReal X[2] = {own->point[q][0] - p->moved[0], own->point[q][1] - p->moved[1]};
 
-    if (!((X[0] - walls->knot[k][0]) * walls->tau[k][0] + (X[1] - walls->knot[k][1]) * walls->tau[k][1] > 0.0) ||
-        (X[0] - walls->knot[next][0]) * walls->tau[next][0] + (X[1] - walls->knot[next][1]) * walls->tau[next][1] > 0.0)
-      continue;
-    if (!gathered) GatherSpan(walls, p->other, j, c);
-    gathered = PETSC_TRUE;
-    LamTouchGapAt((const PetscReal(*)[2])c, X, LamSplineClosest((const PetscReal(*)[2])c, X), &touch.gap);
-    if (!Counts(p, i, q, &touch.gap)) continue;
+    if (!(AlongStart(other, X) > 0.0) || AlongStart(next, X) > 0.0 || IsBeyond(p, other, X, X)) continue;
+    LamTouchGapAt(&other->curve, X, LamSplineClosest(&other->curve, X), &touch.gap);
+    if (!Counts(p, own, q, &touch.gap)) continue;
     touch.loop = p->loop;
     touch.span = i;
     touch.point = q;
@@ -243,29 +296,42 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
     touch.at = j;
     touch.shift[0] = p->shift[0];
     touch.shift[1] = p->shift[1];
-    touch.weight = walls->weight[at];
+    touch.weight = walls->weight[LAM_TOUCH_POINTS * (p->loop * n + i) + q];
     p->visitor(p->ctx, &touch);
+  }
+}
+
+/* The spans of two groups. */
+static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
+{
+  const LamWalls *walls = p->walls;
+  const PetscInt n = walls->spans, end[2] = {PetscMin(n, GROUP * (a + 1)), PetscMin(n, GROUP * (b + 1))};
+
+  for (PetscInt i = GROUP * a; i < end[0]; ++i) {
+    const LamBox *box = &walls->span[p->loop * n + i].box;
+    const LamBox here = Moved(box, p->moved, 0.0), near = Moved(box, p->moved, p->reach);
+
+    if (!Meet(&near, &walls->group[p->other * walls->groups + b])) continue;
+    for (PetscInt j = GROUP * b; j < end[1]; ++j) {
+      const LamWallSpan *other = &walls->span[p->other * n + j];
+
+      if (!(p->itself && Between(n, i, j) < walls->apart) && Meet(&near, &other->box) &&
+          !IsBeyond(p, other, here.low, here.high))
+        VisitSpans(p, i, j);
+    }
   }
 }
 
 static void VisitLoops(const Pair *p)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->spans;
-  static const PetscReal none[2] = {0.0, 0.0};
 
-  for (PetscInt i = 0; i < n; ++i) {
-    const LamBox *hull = &walls->hull[p->loop * n + i];
-    LamBox here;
+  for (PetscInt a = 0; a < walls->groups; ++a) {
+    const LamBox near = Moved(&walls->group[p->loop * walls->groups + a], p->moved, p->reach);
 
-    if (!AreNear(hull, &walls->box[p->other], p->moved, p->reach)) continue;
-    for (PetscInt d = 0; d < 2; ++d) {
-      here.low[d] = hull->low[d] - p->moved[d] - p->reach;
-      here.high[d] = hull->high[d] - p->moved[d] + p->reach;
-    }
-    for (PetscInt j = 0; j < n; ++j)
-      if (AreNear(&here, &walls->hull[p->other * n + j], none, 0.0) && !(p->itself && Between(n, i, j) < walls->apart))
-        VisitSpans(p, i, j);
+    if (!Meet(&near, &walls->box[p->other])) continue;
+    for (PetscInt b = 0; b < walls->groups; ++b)
+      if (Meet(&near, &walls->group[p->other * walls->groups + b])) VisitGroups(p, a, b);
   }
 }
 
@@ -304,8 +370,9 @@ static void VisitImages(Pair *p)
   const LamWalls *walls = p->walls;
   const LamMesh *mesh = walls->mesh;
   PetscInt range[2][2];
+  LamBox near;
 
-  p->reach = PetscMax(p->width, p->loop % 2 ? walls->thickness[p->other / 2] : DEEPEST);
+  p->reach = PetscMax(p->width, DEEPEST);
   FindImages(p, range);
   for (PetscInt i = range[0][0]; i <= range[0][1]; ++i)
     for (PetscInt j = range[1][0]; j <= range[1][1]; ++j) {
@@ -313,7 +380,9 @@ static void VisitImages(Pair *p)
       for (PetscInt d = 0; d < 2; ++d)
         p->shift[d] = (PetscReal)i * mesh->period[0][d] + (PetscReal)j * mesh->period[1][d];
       for (PetscInt d = 0; d < 2; ++d) p->moved[d] = walls->F[3 * d] * p->shift[0] + walls->F[3 * d + 1] * p->shift[1];
-      if (AreNear(&walls->box[p->loop], &walls->box[p->other], p->moved, p->reach)) VisitLoops(p);
+      p->reach = PetscMax(p->width, p->itself ? walls->thickness[p->other / 2] : DEEPEST);
+      near = Moved(&walls->box[p->loop], p->moved, p->reach);
+      if (Meet(&near, &walls->box[p->other])) VisitLoops(p);
     }
 }
 

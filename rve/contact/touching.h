@@ -19,7 +19,6 @@
 #include "mesh.h"
 #include "smooth.h"
 
-#define LAM_SPAN_NODES 5   /* nodes, following each other, that the control points of a span depend on */
 #define LAM_TOUCH_POINTS 6 /* per span: 3 leave a ripple in the tangent, more change little */
 
 typedef struct {
@@ -27,9 +26,19 @@ typedef struct {
 } LamBox;
 
 typedef struct {
-  PetscInt first;                            /* of the nodes of the span */
-  PetscReal share[LAM_SPAN][LAM_SPAN_NODES]; /* control point = sum share node */
+  PetscInt first;                                    /* of the nodes of the span, which follow each other */
+  PetscReal share[LAM_SPAN][LAM_SPAN_NODES];         /* control point = sum share node */
+  PetscReal point[LAM_TOUCH_POINTS][LAM_SPAN_NODES]; /* point = sum point node */
 } LamSpanNodes;
+
+/* A span at the positions last placed. */
+typedef struct {
+  LamSplineCurve curve;
+  PetscReal point[LAM_TOUCH_POINTS][2];
+  LamBox box;
+  PetscReal outward[2],
+      top; /* normal of the chord; outward.y <= top in the span, where no normal turns by 90 degrees */
+} LamWallSpan;
 
 typedef struct {
   const LamMesh *mesh;                   /* borrowed */
@@ -43,10 +52,11 @@ typedef struct {
   PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
   LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
   /* of the positions last placed */
-  PetscReal (*x)[2];               /* [loop][span] control points: span k lies between k and k + 1 */
-  PetscReal (*point)[2];           /* [loop][span][point] */
-  PetscReal (*knot)[2], (*tau)[2]; /* [loop][span] start of the span and tangent there */
-  LamBox *box, *hull;              /* [loop], [loop][span] */
+  PetscReal (*x)[2]; /* [loop][span] control points: span k lies between k and k + 1 */
+  LamWallSpan *span; /* [loop][span] */
+  LamBox *box;       /* [loop] */
+  LamBox *group;     /* [loop][group] of spans following each other */
+  PetscInt groups;   /* of a loop */
   PetscReal F[9];
 } LamWalls;
 

@@ -13,13 +13,6 @@ typedef struct {
   PetscInt64 *key;
 } Pairs;
 
-static int CompareKeys(const void *a, const void *b)
-{
-  const PetscInt64 x = *(const PetscInt64 *)a, y = *(const PetscInt64 *)b;
-
-  return x < y ? -1 : x > y;
-}
-
 static void AddCoupled(PetscInt a, PetscInt b, Pairs *pairs)
 {
   if (a > 0 && b > 0) pairs->key[pairs->count++] = (PetscInt64)PetscMin(a, b) * pairs->groups + PetscMax(a, b);
@@ -60,7 +53,7 @@ static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplin
   for (PetscInt i = 0; i < inner && lumens; ++i)
     AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + i / mesh->ring_nodes, pairs);
   for (PetscInt g = pairs->classes; g < pairs->groups; ++g) AddCoupled(g, g, pairs);
-  qsort(pairs->key, (size_t)pairs->count, sizeof(*pairs->key), CompareKeys);
+  PetscCall(PetscSortInt64(pairs->count, pairs->key));
   for (PetscInt k = 0; k < pairs->count; ++k)
     if (k == 0 || pairs->key[k] != pairs->key[k - 1]) pairs->key[unique++] = pairs->key[k];
   pairs->count = unique;
@@ -125,6 +118,32 @@ PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j)
   return low;
 }
 
+PetscInt LamLinearBlock(const LamLinear *linear, PetscInt a, PetscInt b)
+{
+  const PetscInt i = LamUnknown(a, 0), j = LamUnknown(b, 0), entry = LamLinearEntry(linear, i, j);
+
+  return entry >= 0 && linear->column[entry] == PetscMax(i, j) ? entry : -1;
+}
+
+/* Indices of the values of an element. */
+static void Locate(const LamMesh *mesh, const LamLinear *linear, PetscInt e, PetscInt position[LAM_PAIRS])
+{
+  PetscInt all[LAM_ELEMENT_DOFS][LAM_ELEMENT_DOFS], pair = 0;
+
+  for (PetscInt i = 0; i < LAM_ELEMENT_NODES; ++i)
+    for (PetscInt j = i; j < LAM_ELEMENT_NODES; ++j) {
+      const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
+      const PetscInt a = mesh->node_class[nodes[i]], b = mesh->node_class[nodes[j]];
+      PetscInt entry[2][2];
+
+      LamLinearEntries(linear, a, b, LamLinearBlock(linear, a, b), entry);
+      for (PetscInt d = 0; d < 2; ++d)
+        for (PetscInt f = 0; f < 2; ++f) all[2 * i + d][2 * j + f] = entry[d][f];
+    }
+  for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i)
+    for (PetscInt j = i; j < LAM_ELEMENT_DOFS; ++j) position[pair++] = all[i][j];
+}
+
 PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear)
 {
   static const LamCouplings none = {0};
@@ -145,15 +164,7 @@ PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *coupling
   (void)FillRows(&pairs, linear);
   PetscCall(PetscFree(pairs.key));
   PetscCall(PetscMalloc1(LAM_PAIRS * mesh->element_count, &linear->position));
-  for (PetscInt e = 0; e < mesh->element_count; ++e)
-    for (PetscInt i = 0, pair = 0; i < LAM_ELEMENT_DOFS; ++i)
-      for (PetscInt j = i; j < LAM_ELEMENT_DOFS; ++j, ++pair) {
-        const PetscInt *nodes = &mesh->elements[LAM_ELEMENT_NODES * e];
-
-        linear->position[LAM_PAIRS * e + pair] =
-            LamLinearEntry(linear, LamUnknown(mesh->node_class[nodes[i / 2]], i % 2),
-                           LamUnknown(mesh->node_class[nodes[j / 2]], j % 2));
-      }
+  for (PetscInt e = 0; e < mesh->element_count; ++e) Locate(mesh, linear, e, &linear->position[LAM_PAIRS * e]);
   PetscFunctionReturn(0);
 }
 

@@ -37,10 +37,21 @@ typedef struct {
 PetscErrorCode LamLinearCreate(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, LamLinear *linear);
 /* Index into values of the entry of unknowns i and j, which must be coupled; -1 if one of them is negative. */
 PetscInt LamLinearEntry(const LamLinear *linear, PetscInt i, PetscInt j);
-/* Whether that entry exists. */
-static inline PetscBool LamLinearHas(const LamLinear *linear, PetscInt entry, PetscInt i, PetscInt j)
+/* Index of the first entry of two classes; -1 if they are not coupled, or one is prescribed. */
+PetscInt LamLinearBlock(const LamLinear *linear, PetscInt a, PetscInt b);
+/* From it, the indices of component d of a with e of b; -1 if it is -1. */
+static inline void LamLinearEntries(const LamLinear *linear, PetscInt a, PetscInt b, PetscInt first,
+                                    PetscInt entry[2][2])
 {
-  return (PetscBool)(linear->column[entry] == PetscMax(i, j));
+  const PetscInt row = LamUnknown(PetscMin(a, b), 0);
+  /* both rows of a class have the same columns but for the diagonal */
+  const PetscInt second = first < 0 ? -1 : first + linear->row[row + 1] - linear->row[row] - 1;
+  const PetscInt step = first < 0 ? 0 : 1;
+
+  entry[0][0] = first;
+  entry[1][1] = second + step;
+  entry[0][1] = a <= b ? first + step : second;
+  entry[1][0] = a < b ? second : first + step;
 }
 PetscErrorCode LamLinearCreateMatrix(MPI_Comm comm, LamLinear *linear); /* needs PETSc; the rest above does not */
 PetscErrorCode LamLinearDestroy(LamLinear *linear);

@@ -198,7 +198,8 @@ TEST(ContourOfEvenlySpacedNodesIsTheLineThroughThem)
 /* ---- a point near an arc ---- */
 
 #define ARCS 40
-#define ARC_STEP 1e-3 /* of the differences; gaps vary over the span's length, 0.1: errors of (1e-2)^6, and rounding   \
+#define ARC_STEP                                                                                                       \
+  1e-3                /* of the differences; gaps vary over the span's length, 0.1: errors of (1e-2)^6, and rounding   \
                        */
 #define SCATTER 0.012 /* of the control points about a circle: a tenth of a span */
 #define ARC_DEPTH 0.1 /* of the point, to both sides; less than the radius of curvature, 0.4 */
@@ -207,6 +208,7 @@ TEST(ContourOfEvenlySpacedNodesIsTheLineThroughThem)
 typedef struct {
   double x[2 * LAM_SPAN][2], at;
 } Arc;
+#define ARC_DOFS (4 * LAM_SPAN)
 static Arc arcs[ARCS];
 #define FOR_ARCS(arc) for (const Arc *arc = arcs; arc < arcs + ARCS; arc++)
 
@@ -267,14 +269,40 @@ static int DrawAll(void **state)
   return 0;
 }
 
+static LamSplineCurve CurveOf(const Arc *arc)
+{
+  LamSplineCurve curve;
+
+  LamSplineCurveOf(SpanOf(arc), &curve);
+  return curve;
+}
+
+static double ClosestTo(const Arc *arc)
+{
+  const LamSplineCurve curve = CurveOf(arc);
+  double X[2];
+
+  PointOf(arc, X);
+  return LamSplineClosest(&curve, X);
+}
+
 static LamTouchGap GapOf(const Arc *arc)
 {
+  const LamSplineCurve curve = CurveOf(arc);
   LamTouchGap gap;
   double X[2];
 
   PointOf(arc, X);
-  LamTouchGapAt(SpanOf(arc), X, LamSplineClosest(SpanOf(arc), X), &gap);
+  LamTouchGapAt(&curve, X, ClosestTo(arc), &gap);
   return gap;
+}
+
+/* The contour's point at t. */
+static void ContourAt(const Arc *arc, double t, double y[2])
+{
+  const LamSplineWeights w = WeightsAt(t);
+
+  LamSplineSum(w.N, SpanOf(arc), y);
 }
 
 /* Distance from the contour's point at t; *along (or NULL): its component along the tangent. */
@@ -302,10 +330,9 @@ TEST(ClosestPointIsPerpendicular)
 {
   FOR_ARCS(arc)
   {
-    double X[2], along;
+    double along;
 
-    PointOf(arc, X);
-    (void)DistanceAt(arc, LamSplineClosest(SpanOf(arc), X), &along);
+    (void)DistanceAt(arc, ClosestTo(arc), &along);
     assert_near(along, 0.0, 1e-15); /* a few roundings of positions of 0.5 */
   }
 }
@@ -314,10 +341,8 @@ TEST(NoPointOfTheArcIsCloser)
 {
   FOR_ARCS(arc)
   {
-    double X[2], least;
+    const double least = DistanceAt(arc, ClosestTo(arc), NULL);
 
-    PointOf(arc, X);
-    least = DistanceAt(arc, LamSplineClosest(SpanOf(arc), X), NULL);
     for (int k = 0; k <= 1000; k++) assert_true(DistanceAt(arc, k / 1000.0, NULL) >= least * (1.0 - 1e-14));
   }
 }
@@ -331,7 +356,7 @@ TEST(GapIsTheDistancePositiveOutside)
     double X[2], y[2];
 
     PointOf(arc, X);
-    LamSplineSum(gap.master.N, SpanOf(arc), y);
+    ContourAt(arc, gap.t, y);
     assert_near(fabs(gap.gap), hypot(X[0] - y[0], X[1] - y[1]), 1e-15);
     assert_true((gap.gap > 0.0) == (hypot(X[0], X[1]) > hypot(y[0], y[1])));
   }
@@ -349,24 +374,43 @@ static double FunctionOf(const Arc *arc)
   return SLOPE * gap + 0.5 * BEND * gap * gap;
 }
 
-static void VariationOf(const Arc *arc, double f[LAM_TOUCH_DOFS], double K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS])
+/* Control points for nodes: those of the point's arc, then those of the other one; the last of either is not used. */
+static int NodeOf(int i)
+{
+  return i < LAM_SPAN ? i : i - LAM_SPAN + LAM_SPAN_NODES;
+}
+
+static void VariationOf(const Arc *arc, double f[ARC_DOFS], double K[ARC_DOFS][ARC_DOFS])
 {
   const LamTouchGap gap = GapOf(arc);
-  const LamSplineWeights w = WeightsAt(arc->at);
+  const LamSplineWeights point = WeightsAt(arc->at), closest = WeightsAt(gap.t);
+  LamTouchWeights weights = {0};
+  double of_nodes[LAM_BLOCK_DOFS] = {0}, by_nodes[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS] = {{0}};
 
-  memset(f, 0, LAM_TOUCH_DOFS * sizeof(*f));
-  if (K) memset(K, 0, LAM_TOUCH_DOFS * sizeof(*K));
-  LamTouchAddVariation(&gap, w.N, SLOPE + BEND * gap.gap, BEND, f, K);
+  for (int a = 0; a < LAM_SPAN; a++) {
+    weights.N[NodeOf(a)] = point.N[a];
+    weights.N[NodeOf(LAM_SPAN + a)] = -closest.N[a];
+    weights.dN[NodeOf(LAM_SPAN + a)] = closest.dN[a];
+  }
+  LamTouchAddVariation(&gap, &weights, SLOPE + BEND * gap.gap, BEND, of_nodes, K ? by_nodes : NULL);
+  for (int i = 0; i < ARC_DOFS; i++) {
+    f[i] = of_nodes[2 * NodeOf(i / 2) + i % 2];
+    for (int j = 0; K && j < ARC_DOFS; j++) {
+      const int p = 2 * NodeOf(i / 2) + i % 2, q = 2 * NodeOf(j / 2) + j % 2;
+
+      K[i][j] = p >= 2 * LAM_SPAN_NODES && q < 2 * LAM_SPAN_NODES ? by_nodes[q][p] : by_nodes[p][q];
+    }
+  }
 }
 
 TEST(FirstVariationIsDerivativeOfTheGap)
 {
   FOR_ARCS(arc)
   {
-    double f[LAM_TOUCH_DOFS];
+    double f[ARC_DOFS];
 
     VariationOf(arc, f, NULL);
-    for (int i = 0; i < LAM_TOUCH_DOFS; i++) {
+    for (int i = 0; i < ARC_DOFS; i++) {
       double difference = 0.0;
 
       for (int k = 1; k <= 3; k++)
@@ -385,11 +429,11 @@ TEST(SecondVariationIsDerivativeOfTheFirst)
 {
   FOR_ARCS(arc)
   {
-    double f[LAM_TOUCH_DOFS], K[LAM_TOUCH_DOFS][LAM_TOUCH_DOFS];
+    double f[ARC_DOFS], K[ARC_DOFS][ARC_DOFS];
 
     VariationOf(arc, f, K);
-    for (int i = 0; i < LAM_TOUCH_DOFS; i++) {
-      double difference[LAM_TOUCH_DOFS] = {0};
+    for (int i = 0; i < ARC_DOFS; i++) {
+      double difference[ARC_DOFS] = {0};
 
       for (int k = 1; k <= 3; k++)
         for (int side = -1; side <= 1; side += 2) {
@@ -397,9 +441,9 @@ TEST(SecondVariationIsDerivativeOfTheFirst)
 
           moved.x[i / 2][i % 2] += side * k * ARC_STEP;
           VariationOf(&moved, f, NULL);
-          for (int j = 0; j < LAM_TOUCH_DOFS; j++) difference[j] += side * central[k - 1] * f[j] / ARC_STEP;
+          for (int j = 0; j < ARC_DOFS; j++) difference[j] += side * central[k - 1] * f[j] / ARC_STEP;
         }
-      for (int j = 0; j < LAM_TOUCH_DOFS; j++) assert_near(K[i][j], difference[j], 1e-8);
+      for (int j = 0; j < ARC_DOFS; j++) assert_near(K[i][j], difference[j], 1e-8);
     }
   }
 }
@@ -409,12 +453,13 @@ TEST(SecondVariationIsBoundedAtTheCentreOfCurvature)
 {
   FOR_ARCS(arc)
   {
+    const LamSplineCurve curve = CurveOf(arc);
     LamTouchGap gap = GapOf(arc);
     double X[2], y[2];
 
-    LamSplineSum(gap.master.N, SpanOf(arc), y);
+    ContourAt(arc, gap.t, y);
     for (int d = 0; d < 2; d++) X[d] = y[d] + gap.normal[d] * gap.m / gap.b;
-    LamTouchGapAt(SpanOf(arc), X, 0.5, &gap);
+    LamTouchGapAt(&curve, X, 0.5, &gap);
     assert_true(gap.H > 0.04 * gap.m);
   }
 }

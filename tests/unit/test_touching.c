@@ -284,11 +284,13 @@ static double AlongAt(const double c[LAM_SPAN][2], double t, const double X[2])
 static int Touches(const LamWalls *walls, const double c[LAM_SPAN][2], const double X[2], const double tau[2],
                    int itself)
 {
+  LamSplineCurve curve;
   LamTouchGap gap;
   double opposed;
 
+  LamSplineCurveOf(c, &curve);
   if (!(AlongAt(c, 0.0, X) > 0.0) || AlongAt(c, 1.0, X) > 0.0) return 0;
-  LamTouchGapAt(c, X, LamSplineClosest(c, X), &gap);
+  LamTouchGapAt(&curve, X, LamSplineClosest(&curve, X), &gap);
   opposed = tau[1] * gap.normal[0] - tau[0] * gap.normal[1];
   if (gap.gap >= WIDTH) return 0;
   return gap.gap >= -walls->thickness[0] || (!itself && gap.gap >= -DEEPEST && opposed < 0.0);
