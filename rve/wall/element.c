@@ -109,11 +109,16 @@ PetscErrorCode LamElementSetGeometry(const PetscReal X[][2], const PetscReal fib
   PetscFunctionReturn(0);
 }
 
-PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33)
+LAM_CLONES static PetscBool ElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33)
 {
   LamPoints H[4], dilation;
 
   return Kinematics(geometry, u, F33, H, dilation);
+}
+
+PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal u[][2], PetscReal F33)
+{
+  return ElementIsValid(geometry, u, F33);
 }
 
 LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,

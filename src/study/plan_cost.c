@@ -8,17 +8,17 @@
 #include "plan.h"
 #include <lamella/rve.h>
 
-/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for bonded tissue small
-   enough for a factorisation without pivoting (rve/cholesky.h). */
-#define ITERATION_ASSEMBLIES 7.0
-#define SMALL_ITERATION_ASSEMBLIES 4.0
-#define SMALL_UNKNOWNS 3000
+/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for tissue that is too large
+   for a factorisation without pivoting (rve/linear/ldl.h). */
+#define ITERATION_ASSEMBLIES 2.5
+#define LARGE_ITERATION_ASSEMBLIES 7.0
+#define LARGE_UNKNOWNS 30000
 /* Factorisations of a single state, and of a material point during a load step; including the tangent. */
 #define STATE_FACTORISATIONS 6.0
 #define POINT_FACTORISATIONS 5.0
 /* Cost of a state of contact tissue relative to a bonded one: more iterations, and a denser matrix because of the
    faces. */
-#define CONTACT_FACTOR 4.0
+#define CONTACT_FACTOR 5.0
 /* For a map: states that bracket the failure of one path; cost of a state of contact tissue on two meshes relative
    to the first mesh alone. */
 #define BRACKET_STATES 10
@@ -46,7 +46,7 @@ PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, LamCost *
   cell.cell = NULL;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &cost->assembly));
   cost->assembly *= cells;
-  iteration = !contact && n <= SMALL_UNKNOWNS ? SMALL_ITERATION_ASSEMBLIES : ITERATION_ASSEMBLIES;
+  iteration = n <= LARGE_UNKNOWNS ? ITERATION_ASSEMBLIES : LARGE_ITERATION_ASSEMBLIES;
   iteration *= cost->assembly * (contact ? CONTACT_FACTOR : 1);
   cost->state = STATE_FACTORISATIONS * iteration;
   cost->point = POINT_FACTORISATIONS * iteration;

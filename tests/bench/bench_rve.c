@@ -117,7 +117,7 @@ static PetscErrorCode Parts(const PetscInt mesh[2])
   LamRVEState state;
   LamResponse response;
   Times times = {0};
-  double ms;
+  double ms = 0.0;
 
   PetscFunctionBeginUser;
   micro.along = mesh[0];
@@ -146,7 +146,7 @@ static PetscErrorCode States(PetscBool contact)
   for (size_t k = 0; k < sizeof(shears) / sizeof(shears[0]); ++k) {
     const LamLoad load = PlaneLoad(1, shears[k], 0, 1, TURGOR);
     LamResponse response;
-    double ms;
+    double ms = 0.0;
 
     PetscCall(TimeState(rve, &load, state, &response, &ms));
     printf("%-8s %6g %12d %15d %9.2f\n", contact ? "contact" : "bonded", shears[k], (int)response.newton_iterations,
