@@ -8,17 +8,17 @@
 #include "plan.h"
 #include <lamella/rve.h>
 
-/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for tissue that is too large
-   for a factorisation without pivoting (rve/linear/ldl.h). */
+/* Cost of an iteration (assembly, factorisation, solve) in assemblies; the second value is for many cells, whose
+   factors are fuller. */
 #define ITERATION_ASSEMBLIES 2.5
 #define LARGE_ITERATION_ASSEMBLIES 7.0
-#define LARGE_UNKNOWNS 30000
+#define LARGE_UNKNOWNS 6000
 /* Factorisations of a single state, and of a material point during a load step; including the tangent. */
 #define STATE_FACTORISATIONS 6.0
 #define POINT_FACTORISATIONS 5.0
-/* Cost of a state of contact tissue relative to a bonded one: more iterations, and a denser matrix because of the
-   faces. */
-#define CONTACT_FACTOR 5.0
+/* Cost of a state of contact tissue relative to a bonded one, in assemblies: these are themselves three times as long.
+ */
+#define CONTACT_FACTOR 1.5
 /* For a map: states that bracket the failure of one path; cost of a state of contact tissue on two meshes relative
    to the first mesh alone. */
 #define BRACKET_STATES 10
