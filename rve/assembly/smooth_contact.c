@@ -218,7 +218,7 @@ PetscErrorCode LamSmoothCreate(LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve->smooth));
   PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
-  PetscCall(PetscMalloc1(LAM_KEPT * rve->smooth->walls.loops * rve->smooth->walls.spans, &rve->smooth->entries));
+  PetscCall(PetscCalloc1(LAM_KEPT * rve->smooth->walls.loops * rve->smooth->walls.spans, &rve->smooth->entries));
   PetscCall(AddFacing(rve));
   rve->smooth->base_count = rve->smooth->count;
   PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));

@@ -20,16 +20,16 @@ typedef struct {
 } LamTouchStrength;
 
 /* Sums over the points of one span against one other span, per strength and per F33. Nodes: those of the point's span,
-   then those of the other one in its image. */
+   then those of the other one in its image. K is symmetric; the rows of the other span's nodes in the columns of the
+   point's are set with LAM_TOUCH_WIDTH only. */
 typedef struct {
   PetscInt class[LAM_BLOCK_NODES];
   PetscReal shift[LAM_BLOCK_NODES][2]; /* x = y_class + F shift */
   LamTouchStrength strength;
   PetscReal energy, energy_width; /* and its derivative with respect to the width */
   PetscReal f[LAM_BLOCK_DOFS], f_width[LAM_BLOCK_DOFS];
-  PetscReal K[LAM_BLOCK_DOFS]
-             [LAM_BLOCK_DOFS]; /* LAM_TOUCH_WIDTH: all; else none of rows >= columns beyond the point's */
-  PetscBool facing, lumen;     /* the walls face each other in the undeformed tissue; they belong to a lumen */
+  PetscReal K[LAM_BLOCK_DOFS][LAM_BLOCK_DOFS];
+  PetscBool facing, lumen; /* the walls face each other in the undeformed tissue; they belong to a lumen */
   PetscInt loop, span, other, at;
 } LamTouchBlock;
 
@@ -41,10 +41,9 @@ typedef enum {
 } LamTouchWanted; /* and all before */
 typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
 
-#define LAM_KEPT 4 /* blocks of a span whose entries are kept: a wall meets one or two spans of another, or two walls  \
-                    */
-/* Where a block belongs in the matrix in use. */
+#define LAM_KEPT 4 /* blocks of a span whose entries are kept: it meets up to two spans of each of two walls */
 #define LAM_BLOCK_PAIRS (LAM_BLOCK_NODES * (LAM_BLOCK_NODES + 1) / 2)
+/* Where a block belongs in the matrix in use. */
 typedef struct {
   PetscInt block[4];               /* loop, span, other and at; the first is -1 if nothing is kept */
   PetscInt first[LAM_BLOCK_PAIRS]; /* of nodes i <= j, row by row: first entry of their classes, -1: prescribed */

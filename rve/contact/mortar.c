@@ -52,6 +52,7 @@ static PetscReal Project(const PetscReal y[][2], const PetscReal X[2])
   LamEdgeCurvature(y, curvature);
   for (PetscInt it = 0; it < 50; ++it) {
     PetscReal M[3], dM[3], at[2], tau[2], z[2], H, m, step;
+    PetscBool newton;
 
     LamEdgeShape(eta, M, dM);
     LamEdgeSum(y, M, at);
@@ -60,11 +61,13 @@ static PetscReal Project(const PetscReal y[][2], const PetscReal X[2])
     z[1] = X[1] - at[1];
     m = LamDot(tau, tau);
     H = m - LamDot(z, curvature);
-    if (H < 0.2 * m) H = m;
+    newton = (PetscBool)(H >= 0.2 * m);
+    if (!newton) H = m;
     step = PetscMax(-0.5, PetscMin(0.5, LamDot(z, tau) / H));
     step = PetscMax(-1.5, PetscMin(1.5, eta + step)) - eta;
     eta += step;
-    if (PetscAbsReal(step) < 1e-15) break;
+    /* Newton's method leaves an error of about the square of its step */
+    if (PetscAbsReal(step) < (newton ? PetscSqrtReal(0.5 * PETSC_MACHINE_EPSILON) : 1e-15)) break;
   }
   return eta;
 }

@@ -2,7 +2,6 @@
 
 #define LEAST_H 0.05 /* of m: bounds d2(gap) where a wall is bent as sharply as a point lies deep in it */
 #define ROOT_STEPS 60
-#define ROOT_STEP 1e-8 /* of t: Newton's method leaves an error of its square, below rounding */
 
 void LamTouchLawEvaluate(PetscReal gap, PetscReal width, LamTouchLaw *law)
 {
@@ -76,7 +75,8 @@ static inline PetscReal Along(const LamSplineCurve *curve, const PetscReal X[2],
   return Dot(z, tau);
 }
 
-/* Newton's method on (X - y).tau = 0 from the zero of its chord, safeguarded by bisection. */
+/* Newton's method on (X - y).tau = 0 from the zero of its chord, safeguarded by bisection. The last step leaves an
+   error of about its square, the rounding. */
 PetscReal LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2])
 {
   PetscReal low = 0.0, high = 1.0, slope, t;
@@ -92,7 +92,7 @@ PetscReal LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2])
       high = t;
     t -= value / slope;
     if (!(slope < 0.0 && t >= low && t <= high)) t = 0.5 * (low + high);
-    if (PetscAbsReal(t - before) <= ROOT_STEP) break;
+    if (PetscAbsReal(t - before) <= PetscSqrtReal(0.5 * PETSC_MACHINE_EPSILON)) break;
   }
   return t;
 }

@@ -163,7 +163,8 @@ static void PlaceControl(const LamWalls *walls, const PetscReal F[9], const Pets
   }
 }
 
-/* Box, normal and top of a span from its Bezier points, between which it lies. */
+/* Box, normal and top of a span from its Bezier points: it lies within their hull, and its tangents within that of
+   their differences. */
 static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
 {
   PetscReal p[LAM_SPAN][2], length, leg[LAM_SPAN - 1];

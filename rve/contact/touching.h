@@ -11,6 +11,9 @@
 
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
+
+  Closest points are computed where the boxes of two spans lie within reach, and the point is not farther outside the
+  other span than the width, as seen along the normal of its chord.
 */
 #ifndef LAM_RVE_TOUCHING_H
 #define LAM_RVE_TOUCHING_H
@@ -36,8 +39,8 @@ typedef struct {
   LamSplineCurve curve;
   PetscReal point[LAM_TOUCH_POINTS][2];
   LamBox box;
-  PetscReal outward[2],
-      top; /* normal of the chord; outward.y <= top in the span, where no normal turns by 90 degrees */
+  PetscReal outward[2]; /* normal of the chord */
+  PetscReal top;        /* most of outward.y; infinite if a normal of the span is not within 90 degrees of outward */
 } LamWallSpan;
 
 typedef struct {

@@ -318,6 +318,23 @@ static double DistanceAt(const Arc *arc, double t, double *along)
   return hypot(X[0] - y[0], X[1] - y[1]);
 }
 
+TEST(CurveIsTheSpline)
+{
+  FOR_ARCS(arc)
+  for (double t = 0.0; t <= 1.0; t += 0.125) {
+    const LamSplineCurve curve = CurveOf(arc);
+    const LamSplineWeights w = WeightsAt(t);
+    double at[3][2], sum[3][2];
+
+    LamSplineAt(&curve, t, at[0], at[1], at[2]);
+    LamSplineSum(w.N, SpanOf(arc), sum[0]);
+    LamSplineSum(w.dN, SpanOf(arc), sum[1]);
+    LamSplineSum(w.ddN, SpanOf(arc), sum[2]);
+    for (int k = 0; k < 3; k++)
+      for (int d = 0; d < 2; d++) assert_near(at[k][d], sum[k][d], 1e-15);
+  }
+}
+
 TEST(ArcsLieOnBothSidesOfTheirPoints)
 {
   int outside = 0;
