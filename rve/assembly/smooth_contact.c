@@ -110,8 +110,7 @@ static void AddTouch(void *ctx, const LamTouching *touch)
   block->energy += half * law.phi;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
   WeighNodes(&sum->rve->smooth->walls, touch, &weights);
-  LamTouchAddVariation(&touch->gap, &weights, half * law.d, half * law.dd, block->f,
-                       sum->wanted == LAM_TOUCH_FORCE ? NULL : block->K);
+  LamTouchAddVariation(&touch->gap, &weights, half * law.d, half * law.dd, block->f, block->K);
   if (sum->wanted != LAM_TOUCH_WIDTH) return;
   block->energy_width += half * law.phi_width;
   LamTouchAddVariation(&touch->gap, &weights, half * law.d_width, 0.0, block->f_width, NULL);

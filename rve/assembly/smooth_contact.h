@@ -33,12 +33,7 @@ typedef struct {
   PetscInt loop, span, other, at;
 } LamTouchBlock;
 
-typedef enum {
-  LAM_TOUCH_ENERGY,
-  LAM_TOUCH_FORCE,
-  LAM_TOUCH_TANGENT,
-  LAM_TOUCH_WIDTH
-} LamTouchWanted; /* and all before */
+typedef enum { LAM_TOUCH_ENERGY, LAM_TOUCH_TANGENT, LAM_TOUCH_WIDTH } LamTouchWanted; /* and all before */
 typedef void (*LamTouchBlockVisitor)(void *ctx, const LamTouchBlock *block);
 
 #define LAM_KEPT 4 /* blocks of a span whose entries are kept: it meets up to two spans of each of two walls */
