@@ -7,7 +7,7 @@
 
   Constraints V^T x = b with multipliers, whose part of the diagonal is zero, may be all that holds soft motions. Pivots
   of the positions, which come first, would then nearly vanish. So a multiple of the constraints is added to the other
-  rows,  [K + rho V V^T, V; V^T, 0] (x, lambda) = (a + rho V b, b),  which changes neither solution nor inertia.
+  rows,  (K + rho V V^T) x + V lambda = a + rho V b,  V^T x = b,  which changes neither solution nor inertia.
 */
 #include "ldl_impl.h"
 #include "clones.h"
@@ -17,6 +17,7 @@
 #define LANES 4         /* right-hand sides at a time */
 
 typedef long Mask __attribute__((vector_size(32)));
+typedef double Two __attribute__((vector_size(16)));
 
 typedef struct {
   PetscInt negative;
@@ -201,31 +202,77 @@ LAM_CLONES static void Substitute(LamLDL ldl, LamFour x[])
   }
 }
 
+/* The same for one right-hand side. */
+LAM_CLONES static void SubstituteOne(LamLDL ldl, Two x[])
+{
+  const PetscInt *start = ldl->start, *index = ldl->index;
+  const LamFour *factor = ldl->factor;
+
+  for (PetscInt j = 0; j < ldl->blocks; ++j) {
+    const double a = x[j][0], b = x[j][1] - ldl->inverse[j][1] * a;
+    const LamFour ab = {a, a, b, b};
+
+    for (PetscInt k = start[j] + 1; k < start[j + 1]; ++k) {
+      const LamFour change = factor[k] * ab;
+
+      x[index[k]] -= __builtin_shufflevector(change, change, 0, 1) + __builtin_shufflevector(change, change, 2, 3);
+    }
+    x[j][0] = ldl->inverse[j][0] * a;
+    x[j][1] = ldl->inverse[j][2] * b;
+  }
+  for (PetscInt j = ldl->blocks - 1; j >= 0; --j) {
+    LamFour sum = {0.0};
+
+    for (PetscInt k = start[j] + 1; k < start[j + 1]; ++k) {
+      const Two below = x[index[k]];
+
+      sum += factor[k] * __builtin_shufflevector(below, below, 0, 1, 0, 1);
+    }
+    x[j][1] -= sum[2] + sum[3];
+    x[j][0] -= sum[0] + sum[1] + ldl->inverse[j][1] * x[j][1];
+  }
+}
+
+/* `lanes` right-hand sides in the order of the factor, with what the constraints add: work [2 blocks][stride]. */
+static void Gather(const LamLDL ldl, PetscInt lanes, PetscInt stride, const PetscReal rhs[], double work[])
+{
+  if (ldl->n % 2)
+    for (PetscInt l = 0; l < stride; ++l) work[(2 * ldl->place[ldl->blocks - 1] + 1) * stride + l] = 0.0;
+  for (PetscInt i = 0; i < ldl->n; ++i) {
+    double *x = &work[(2 * ldl->place[i / 2] + i % 2) * stride];
+
+    for (PetscInt l = 0; l < stride; ++l) x[l] = l < lanes ? rhs[l * ldl->n + i] : 0.0;
+  }
+  for (PetscInt h = ldl->positions; h < ldl->n && ldl->rho > 0.0; ++h) {
+    const LamConstraint *c = &ldl->constraint[h - ldl->positions];
+    const double *b = &work[(2 * ldl->place[h / 2] + h % 2) * stride];
+
+    for (PetscInt k = 0; k < c->size; ++k)
+      for (PetscInt l = 0; l < lanes && c->v[k] != 0.0; ++l)
+        work[(2 * ldl->place[c->at[k] / 2] + c->at[k] % 2) * stride + l] += ldl->rho * c->v[k] * b[l];
+  }
+}
+
+static void Scatter(const LamLDL ldl, PetscInt lanes, PetscInt stride, const double work[], PetscReal solution[])
+{
+  for (PetscInt i = 0; i < ldl->n; ++i)
+    for (PetscInt l = 0; l < lanes; ++l) solution[l * ldl->n + i] = work[(2 * ldl->place[i / 2] + i % 2) * stride + l];
+}
+
 PetscErrorCode LamLDLSolve(LamLDL ldl, PetscInt count, const PetscReal rhs[], PetscReal solution[])
 {
-  const PetscInt n = ldl->n;
+  double *work = (double *)ldl->work;
 
   PetscFunctionBeginUser;
-  if (n % 2) ldl->work[2 * ldl->place[ldl->blocks - 1] + 1] = (LamFour){0.0};
   for (PetscInt first = 0; first < count; first += LANES) {
-    const PetscInt lanes = PetscMin(LANES, count - first);
+    const PetscInt lanes = PetscMin(LANES, count - first), stride = lanes == 1 ? 1 : LANES;
 
-    for (PetscInt i = 0; i < n; ++i) {
-      LamFour *x = &ldl->work[2 * ldl->place[i / 2] + i % 2];
-
-      *x = (LamFour){0.0};
-      for (PetscInt l = 0; l < lanes; ++l) (*x)[l] = rhs[(first + l) * n + i];
-    }
-    for (PetscInt h = ldl->positions; h < n && ldl->rho > 0.0; ++h) {
-      const LamConstraint *c = &ldl->constraint[h - ldl->positions];
-      const LamFour b = ldl->work[2 * ldl->place[h / 2] + h % 2];
-
-      for (PetscInt k = 0; k < c->size; ++k)
-        ldl->work[2 * ldl->place[c->at[k] / 2] + c->at[k] % 2] += ldl->rho * c->v[k] * b;
-    }
-    Substitute(ldl, ldl->work);
-    for (PetscInt i = 0; i < n; ++i)
-      for (PetscInt l = 0; l < lanes; ++l) solution[(first + l) * n + i] = ldl->work[2 * ldl->place[i / 2] + i % 2][l];
+    Gather(ldl, lanes, stride, rhs + first * ldl->n, work);
+    if (lanes == 1)
+      SubstituteOne(ldl, (Two *)work);
+    else
+      Substitute(ldl, ldl->work);
+    Scatter(ldl, lanes, stride, work, solution + first * ldl->n);
   }
   PetscFunctionReturn(0);
 }
