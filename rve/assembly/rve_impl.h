@@ -275,7 +275,7 @@ PetscErrorCode LamRefuse(LamResponse *response, LamStatus status, const char for
 /* Sets the response of a solve that was stopped. */
 PetscErrorCode LamGiveUp(LamResponse *response);
 /* Limit of the iterations for one state, including substeps: some seconds on the default mesh. */
-#define LAM_ITERATION_BUDGET 2000
+#define LAM_ITERATION_BUDGET 8000
 static inline PetscBool LamMayIterate(LamRVE rve)
 {
   return (PetscBool)(rve->work.iterations < rve->budget && !rve->work.stopped);
