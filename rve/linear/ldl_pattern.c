@@ -5,8 +5,7 @@
 #include <stdint.h>
 #include <petscmat.h>
 
-#define MOST_PRODUCTS                                                                                                  \
-  10000000                 /* of blocks, whose places take 20 MB; with more MUMPS is as fast and needs less memory */
+#define MOST_PRODUCTS 50000000 /* of blocks, whose places take up to 100 MB; with more MUMPS is as fast */
 #define LEAST_PER_BLOCK 50 /* products to expect of each block of unknowns: from 70 on one mesh to 1000 on patches */
 
 /* Blocks i <= j of unknowns that are coupled, sorted, keys i * blocks + j. */
