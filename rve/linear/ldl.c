@@ -64,16 +64,16 @@ LAM_INLINE void Subtract(PetscInt targets, PetscInt width, const LamFour *const 
     for (PetscInt s = 0; s < width; ++s) {
       const LamFour A = L[s][t] * D[s], size = A * L[s][t];
 
-      left[t][s] = __builtin_shuffle(A, (Mask){0, 0, 1, 1});
-      right[t][s] = __builtin_shuffle(A, (Mask){2, 2, 3, 3});
+      left[t][s] = __builtin_shufflevector(A, A, 0, 0, 1, 1);
+      right[t][s] = __builtin_shufflevector(A, A, 2, 2, 3, 3);
       sum[t] += (LamFour)((Mask)size & LONG_MAX); /* absolute values */
     }
   for (PetscInt k = 0; k < count; ++k) {
     LamFour change[2] = {{0.0}, {0.0}};
 
     for (PetscInt s = 0; s < width; ++s) {
-      const LamFour a = __builtin_shuffle(L[s][k], (Mask){0, 1, 0, 1});
-      const LamFour b = __builtin_shuffle(L[s][k], (Mask){2, 3, 2, 3});
+      const LamFour a = __builtin_shufflevector(L[s][k], L[s][k], 0, 1, 0, 1);
+      const LamFour b = __builtin_shufflevector(L[s][k], L[s][k], 2, 3, 2, 3);
 
       for (PetscInt t = 0; t < targets; ++t) change[t] += a * left[t][s] + b * right[t][s];
     }
@@ -120,7 +120,7 @@ LAM_INLINE void Eliminate(PetscInt rows, LamFour column[], LamFour *inverse, Out
   left = (LamFour){0.0, 0.0, l, l};
   scale = 1.0 / column[0];
   for (PetscInt k = 1; k < rows; ++k)
-    column[k] = (column[k] - __builtin_shuffle(column[k], (Mask){0, 1, 0, 1}) * left) * scale;
+    column[k] = (column[k] - __builtin_shufflevector(column[k], column[k], 0, 1, 0, 1) * left) * scale;
 }
 
 LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most, PetscReal diagonal)

@@ -148,7 +148,7 @@ static void Extrapolate(const LamResponse *record, const PetscReal U[4], const L
 static PetscErrorCode AnswerLinear(const Scheme *scheme, const LamLoad *load, PetscReal accuracy, LamResponse *r)
 {
   const PetscBool contact = (PetscBool)(scheme->database->header.micro.interface == LAM_INTERFACE_CONTACT);
-  PetscReal R[2][2], U[4], best = INFINITY, nearest[4], Q[2][2], P[5], plane[4];
+  PetscReal R[2][2], U[4], best = INFINITY, nearest[4] = {0}, Q[2][2], P[5], plane[4];
   const LamResponse *records;
   PetscInt n, record = 0;
   int image = 0;
