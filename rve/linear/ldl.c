@@ -2,8 +2,8 @@
   Method. Left-looking: block column j is what earlier columns i that reach row j leave of K(:, j),
     A(k, j) = K(k, j) - sum_i L(k, i) D(i) L(j, i)^T,  A(j, j) = L(j, j) D(j) L(j, j)^T,
     L(k, j) = A(k, j) L(j, j)^-T D(j)^-1,  L(j, j) = [1, 0; l, 1].
-  Blocks are ordered by approximate minimum degree. Columns that have the same rows are taken in
-  pairs, as what is subtracted and as what it is subtracted from, so that numbers stay in registers.
+  Blocks are ordered by approximate minimum degree. Columns that have the same rows are taken in pairs, both where they
+  are subtracted and where they are subtracted from, so that numbers stay in registers.
 
   Constraints V^T x = b with multipliers, whose part of the diagonal is zero, may be all that holds soft motions. Pivots
   of the positions, which come first, would then nearly vanish. So a multiple of the constraints is added to the other

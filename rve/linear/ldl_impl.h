@@ -11,10 +11,10 @@ typedef double LamFour __attribute__((vector_size(32))); /* a 2 x 2 block by col
 /* An unknown that comes last. */
 typedef struct {
   PetscInt size;        /* positions that it is coupled with */
-  PetscInt *at, *entry; /* [size] which they are, indices into values; owned, as `pairs` is, ... */
-  PetscReal *v;         /* [size] column of V; zero if it is not a constraint at present */
-  PetscInt *pairs;      /* [size][size] index into the entries of factor of a pair of them */
-  PetscBool shares;     /* ... but `at` and `pairs` are those of the one before if it has the same positions */
+  PetscInt *at, *entry; /* [size] which they are, indices into values; owned */
+  PetscReal *v;         /* [size] column of V; zero if it is not a constraint at present; owned */
+  PetscInt *pairs;      /* [size][size] index into the entries of factor of a pair of them; owned unless it ... */
+  PetscBool shares;     /* ... is that of the unknown before, which has the same positions */
 } LamConstraint;
 
 /* The columns of a panel that change one or both columns of a later one: rows from the first of these on. */
