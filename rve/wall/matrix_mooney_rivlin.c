@@ -12,6 +12,7 @@
   keep all digits of H. Energy and stress are written in these, with the first-order terms cancelled by hand.
 */
 #include "wall_law.h"
+#include <stdint.h>
 #include <string.h>
 
 #define HALLEY (sizeof(PetscReal) > 8 ? 5 : 3) /* iterations */

@@ -14,7 +14,6 @@
 #define LAM_RVE_WALL_LAW_H
 
 #include <petscsys.h>
-#include <stdint.h>
 #include <lamella/scene.h>
 #include "clones.h"
 
