@@ -83,9 +83,9 @@ LAM_INLINE void Subtract(PetscInt targets, PetscInt width, const LamFour *const 
 }
 
 /* Subtracts a source from the columns of a panel. */
-LAM_INLINE void SubtractSource(const LamLDL ldl, const LamSource *source, const unsigned short target[],
-                               LamFour *const column[], LamFour sum[])
+LAM_INLINE void SubtractSource(const LamLDL ldl, const LamSource *source, LamFour *const column[], LamFour sum[])
 {
+  const unsigned short *target = ldl->target + source->target;
   const PetscInt i = source->column, *start = ldl->start;
   const PetscBool pair = (PetscBool)(source->width == 2);
   /* rows below the panel: of the first of two columns they start one block later */
@@ -126,7 +126,6 @@ LAM_INLINE void Eliminate(PetscInt rows, LamFour column[], LamFour *inverse, Out
 LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most, PetscReal diagonal)
 {
   const PetscInt *start = ldl->start;
-  const unsigned short *target = ldl->target;
   LamFour *factor = ldl->factor;
   double *entries = (double *)factor;
   Outcome out = {0, PETSC_TRUE, 0.0};
@@ -140,17 +139,14 @@ LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most, PetscReal diagonal)
     LamFour *column[2] = {factor + start[j], factor + start[j + width - 1]}, sum[2] = {{0.0}, {0.0}};
 
     for (PetscInt t = 0; t < width; ++t) column[t][0][2] = column[t][0][1] = column[t][0][1] + column[t][0][2];
-    for (PetscInt s = ldl->first[p]; s < ldl->first[p + 1]; ++s) {
-      SubtractSource(ldl, &ldl->source[s], target, column, sum);
-      target += ldl->source[s].count;
-    }
+    for (PetscInt s = ldl->first[p]; s < ldl->first[p + 1]; ++s)
+      SubtractSource(ldl, &ldl->source[s], column, sum);
     for (PetscInt t = 0; t < width; ++t) {
       const PetscInt rows = start[j + t + 1] - start[j + t];
 
-      if (t == 1) { /* the first column of the panel from the second */
-        Subtract(1, 1, (const LamFour *const[2]){column[0] + 1, NULL}, column[0], rows, target, column + 1, sum + 1);
-        target += rows;
-      }
+      if (t == 1) /* the first column of the panel from the second */
+        Subtract(1, 1, (const LamFour *const[2]){column[0] + 1, NULL}, column[0], rows, ldl->target, column + 1,
+                 sum + 1);
       Eliminate(rows, column[t], &ldl->inverse[j + t], &out);
       out.growth = PetscMax(out.growth, PetscMax(sum[t][0] + sum[t][2], sum[t][1] + sum[t][3]));
       if (out.negative > most) out.ok = PETSC_FALSE;

@@ -22,6 +22,7 @@ typedef enum { LAM_TO_FIRST, LAM_TO_SECOND, LAM_TO_BOTH } LamTarget;
 typedef struct {
   PetscInt column, width; /* first column, and their number */
   PetscInt skip, count;   /* rows below the panel that come before; rows from there on */
+  PetscInt target;        /* index of the first of their targets */
   LamTarget to;
 } LamSource;
 
@@ -39,8 +40,8 @@ struct LamLDL_s {
   PetscInt *panel;           /* [panels+1] first column of a panel: one, or two with the same rows below */
   PetscInt *first;           /* [panels+1] first source of a panel */
   LamSource *source;         /* [first[panels]] */
-  unsigned short *target;    /* for each source, and last for the first of a panel's own two columns, of all its rows:
-                                their place in the (first) column that it changes */
+  unsigned short *target;    /* places of the rows of sources in the (first) column that they change; 0, 1, 2, ... come
+                                first, and sources share what they can */
   LamFour *memory;           /* of the following, which start at a multiple of their size */
   LamFour *factor;           /* [start[blocks]] L, on the diagonal D: d0, d0, d1, d1 */
   LamFour *inverse;          /* [blocks] 1/d0, l, 1/d1 */

@@ -156,67 +156,85 @@ static PetscErrorCode FindPanels(LamLDL ldl)
 
 /* The sources that a panel is, one for each panel below in whose columns it has rows. Calls: with source NULL counts
    those of each panel in at [panels]; otherwise at holds where the next one of each panel belongs. */
-static PetscInt ListSources(LamLDL ldl, PetscInt panel, const PetscInt panel_of[], PetscInt at[], LamSource source[])
+static void ListSources(LamLDL ldl, PetscInt panel, const PetscInt panel_of[], PetscInt at[], LamSource source[])
 {
   const PetscInt column = ldl->panel[panel], width = ldl->panel[panel + 1] - column, last = column + width - 1;
   const PetscInt *rows = &ldl->index[ldl->start[last] + 1], below = ldl->start[last + 1] - ldl->start[last] - 1;
-  PetscInt targets = 0;
 
   for (PetscInt k = 0; k < below; ++k) {
     const PetscInt to = panel_of[rows[k]], j = ldl->panel[to];
     const PetscBool both = (PetscBool)(rows[k] == j && k + 1 < below && panel_of[rows[k + 1]] == to);
 
     if (source)
-      source[at[to]] = (LamSource){column, width, k, below - k,
+      source[at[to]] = (LamSource){column, width, k, below - k, 0,
                                    both           ? LAM_TO_BOTH
                                    : rows[k] == j ? LAM_TO_FIRST
                                                   : LAM_TO_SECOND};
     ++at[to];
-    targets += below - k;
     if (both) ++k;
   }
-  return targets;
 }
 
-/* Rows that the first of two columns has in the second. */
-static PetscInt OwnRows(LamLDL ldl, PetscInt panel)
+/* Rows of a source. */
+static const PetscInt *RowsOf(LamLDL ldl, const LamSource *source)
 {
-  const PetscInt last = ldl->panel[panel + 1] - 1;
-
-  return last > ldl->panel[panel] ? ldl->start[last + 1] - ldl->start[last] : 0;
+  return &ldl->index[ldl->start[source->column + source->width - 1] + 1 + source->skip];
 }
 
-/* Lists the sources of all panels, and the places of their rows and of those of a panel's own first column. */
+/* Sets where the places of a source's rows begin; place: of all rows in the column that it changes; before: the source
+   of the same columns before it, or NULL. Places that follow each other are part of the list of all numbers, which
+   comes first; those of the source before serve again where it has the same rows. Others are listed from *end on. */
+static PetscErrorCode Locate(LamLDL ldl, const PetscInt place[], const LamSource *before, LamSource *source,
+                             PetscInt *end, PetscInt *room)
+{
+  const PetscInt *rows = RowsOf(ldl, source), count = source->count, begin = place[rows[0]];
+  PetscBool same = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  source->target = begin;
+  if (place[rows[count - 1]] == begin + count - 1) PetscFunctionReturn(0);
+  if (before && before->count == count) PetscCall(PetscArraycmp(RowsOf(ldl, before), rows, count, &same));
+  source->target = same ? before->target : *end;
+  if (same) PetscFunctionReturn(0);
+  if (*end + count > *room) {
+    *room = 2 * (*end + count);
+    PetscCall(PetscRealloc((size_t)*room * sizeof(*ldl->target), &ldl->target));
+  }
+  for (PetscInt k = 0; k < count; ++k) ldl->target[(*end)++] = (unsigned short)place[rows[k]];
+  PetscFunctionReturn(0);
+}
+
+/* Lists the sources of all panels, and the places of their rows. */
 static PetscErrorCode FindSources(LamLDL ldl)
 {
   const PetscInt blocks = ldl->blocks, *start = ldl->start, *index = ldl->index;
-  PetscInt *place, *at, *panel_of, targets = 0, end = 0;
+  PetscInt *place, *at, *panel_of, end = 0, room;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(blocks, &place, blocks + 1, &at, blocks, &panel_of));
   for (PetscInt p = 0; p < ldl->panels; ++p)
     for (PetscInt j = ldl->panel[p]; j < ldl->panel[p + 1]; ++j) panel_of[j] = p;
   PetscCall(PetscArrayzero(at, ldl->panels));
-  for (PetscInt p = 0; p < ldl->panels; ++p) targets += ListSources(ldl, p, panel_of, at, NULL) + OwnRows(ldl, p);
+  for (PetscInt p = 0; p < ldl->panels; ++p) ListSources(ldl, p, panel_of, at, NULL);
   ldl->first[0] = 0;
   for (PetscInt p = 0; p < ldl->panels; ++p) ldl->first[p + 1] = ldl->first[p] + at[p];
   PetscCall(PetscMalloc1(ldl->first[ldl->panels] + 1, &ldl->source));
-  PetscCall(PetscMalloc1(targets + 1, &ldl->target));
   PetscCall(PetscArraycpy(at, ldl->first, ldl->panels));
-  for (PetscInt p = 0; p < ldl->panels; ++p) (void)ListSources(ldl, p, panel_of, at, ldl->source);
-  for (PetscInt p = 0; p < ldl->panels; ++p) {
+  for (PetscInt p = 0; p < ldl->panels; ++p) ListSources(ldl, p, panel_of, at, ldl->source);
+  for (PetscInt j = 0; j < blocks; ++j) end = PetscMax(end, start[j + 1] - start[j]);
+  room = 2 * end;
+  PetscCall(PetscMalloc1(room, &ldl->target));
+  for (PetscInt k = 0; k < end; ++k) ldl->target[k] = (unsigned short)k;
+  for (PetscInt p = 0; p < ldl->panels; ++p)
     for (PetscInt s = ldl->first[p]; s < ldl->first[p + 1]; ++s) {
-      const LamSource *source = &ldl->source[s];
-      const PetscInt j = ldl->panel[p] + (source->to == LAM_TO_SECOND ? 1 : 0),
-                     last = source->column + source->width - 1;
-      const PetscInt *rows = &index[start[last] + 1 + source->skip];
+      LamSource *source = &ldl->source[s], *before = s > ldl->first[p] ? source - 1 : NULL;
+      const PetscInt j = ldl->panel[p] + (source->to == LAM_TO_SECOND ? 1 : 0);
 
-      if (s == ldl->first[p] || source[-1].to != source->to)
-        for (PetscInt k = start[j]; k < start[j + 1]; ++k) place[index[k]] = k - start[j];
-      for (PetscInt k = 0; k < source->count; ++k) ldl->target[end++] = (unsigned short)place[rows[k]];
+      if (before && before->to != source->to) before = NULL;
+      for (PetscInt k = start[j]; !before && k < start[j + 1]; ++k) place[index[k]] = k - start[j];
+      PetscCall(Locate(ldl, place, before, source, &end, &room));
     }
-    for (PetscInt k = 0; k < OwnRows(ldl, p); ++k) ldl->target[end++] = (unsigned short)k;
-  }
+  PetscCall(PetscRealloc((size_t)end * sizeof(*ldl->target), &ldl->target));
   PetscCall(PetscFree3(place, at, panel_of));
   PetscFunctionReturn(0);
 }
