@@ -27,12 +27,25 @@ static PetscBool IsStopped(LamRVE rve)
   return work->stopped;
 }
 
+/* Creates the factor of the system in use at its first factorisation; a large RVE has no other one at the same time. */
+static PetscErrorCode Prepare(LamRVE rve)
+{
+  PetscFunctionBeginUser;
+  if (rve->linear->factor) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < LAM_SYSTEMS && rve->mesh.element_count >= LAM_LARGE; ++k)
+    PetscCall(LamFactorDestroy(&rve->systems[k].factor));
+  PetscCall(LamLinearCreateMatrix(rve->comm, rve->linear));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVEFactor(LamRVE rve, PetscReal shift, PetscInt *negative, PetscBool *ok)
 {
   PetscFunctionBeginUser;
   *negative = 0;
   *ok = PETSC_FALSE;
-  if (!IsStopped(rve)) PetscCall(LamLinearFactor(rve->linear, shift, negative, ok));
+  if (IsStopped(rve)) PetscFunctionReturn(0);
+  PetscCall(Prepare(rve));
+  PetscCall(LamLinearFactor(rve->linear, shift, negative, ok));
   PetscFunctionReturn(0);
 }
 
@@ -40,7 +53,9 @@ PetscErrorCode LamRVEFactorExpected(LamRVE rve, PetscReal shift, PetscBool *ok)
 {
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
-  if (!IsStopped(rve)) PetscCall(LamLinearFactorExpected(rve->linear, shift, LamExpectedNegative(rve), ok));
+  if (IsStopped(rve)) PetscFunctionReturn(0);
+  PetscCall(Prepare(rve));
+  PetscCall(LamLinearFactorExpected(rve->linear, shift, LamExpectedNegative(rve), ok));
   PetscFunctionReturn(0);
 }
 

@@ -22,6 +22,7 @@
 #include "linear.h"
 #include "smooth_contact.h"
 
+#define LAM_LARGE 2000     /* elements, from which a coarser mesh is solved first and only one factor is kept */
 #define LAM_ENERGY_COUNT 8 /* Psi, then its derivatives with respect to F11, F12, F21, F22, F33, p, g */
 
 /* Positions of one material point and the load they equilibrate. */

@@ -201,12 +201,15 @@ static PetscErrorCode CreateSystem(LamRVE rve, LamLinear *linear)
   PetscFunctionReturn(0);
 }
 
+static void ForgetEntries(const LamSmooth *smooth)
+{
+  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.loops * smooth->walls.spans; ++k) smooth->entries[k].block[0] = -1;
+}
+
 /* Makes a system the one in use. */
 static void Use(LamRVE rve, PetscInt system)
 {
-  const LamSmooth *smooth = rve->smooth;
-
-  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.loops * smooth->walls.spans; ++k) smooth->entries[k].block[0] = -1;
+  if (rve->smooth->entries) ForgetEntries(rve->smooth);
   rve->linear = &rve->systems[system];
   LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
   LamForgetTangent(rve);
@@ -217,7 +220,6 @@ PetscErrorCode LamSmoothCreate(LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&rve->smooth));
   PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
-  PetscCall(PetscCalloc1(LAM_KEPT * rve->smooth->walls.loops * rve->smooth->walls.spans, &rve->smooth->entries));
   PetscCall(AddFacing(rve));
   rve->smooth->base_count = rve->smooth->count;
   PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));
@@ -243,7 +245,7 @@ PetscErrorCode LamUseSmoothLaw(LamRVE rve, PetscReal width)
   rve->contact->exact = PETSC_FALSE;
   rve->smooth->width = width;
   LamWallsRound(&rve->smooth->walls, width);
-  Use(rve, rve->systems[LAM_SYSTEM_GROWN].factor ? LAM_SYSTEM_GROWN : LAM_SYSTEM_BASE);
+  Use(rve, rve->systems[LAM_SYSTEM_GROWN].row ? LAM_SYSTEM_GROWN : LAM_SYSTEM_BASE);
   PetscFunctionReturn(0);
 }
 
@@ -253,7 +255,7 @@ PetscErrorCode LamUseExactLaw(LamRVE rve)
   const LamContact *contact = rve->contact;
 
   PetscFunctionBeginUser;
-  if (!linear->factor) {
+  if (!linear->row) {
     const LamCouplings couplings = {.count = contact->face_count,
                                     .size = contact->chain,
                                     .multipliers = contact->hats,
@@ -261,7 +263,6 @@ PetscErrorCode LamUseExactLaw(LamRVE rve)
 
     PetscCall(LamLinearCreate(&rve->mesh, &couplings, rve->seal.allowed ? rve->mesh.cell_count : 0, linear));
     PetscCall(LamContactSetMatrix(linear, rve->contact));
-    PetscCall(LamLinearCreateMatrix(rve->comm, linear));
   }
   rve->contact->exact = PETSC_TRUE;
   LamWallsRound(&rve->smooth->walls, 0.0);
@@ -285,7 +286,6 @@ static PetscErrorCode Grow(LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(LamLinearDestroy(grown));
   PetscCall(CreateSystem(rve, grown));
-  PetscCall(LamLinearCreateMatrix(rve->comm, grown));
   Use(rve, LAM_SYSTEM_GROWN);
   PetscFunctionReturn(0);
 }
@@ -370,8 +370,13 @@ PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscRea
                                  PetscReal residual[])
 {
   Assembly a = {.rve = rve, .F33 = load->F[8], .residual = residual};
+  LamSmooth *smooth = rve->smooth;
 
   PetscFunctionBeginUser;
+  if (!smooth->entries) {
+    PetscCall(PetscMalloc1(LAM_KEPT * smooth->walls.loops * smooth->walls.spans, &smooth->entries));
+    ForgetEntries(smooth);
+  }
   do {
     PetscCall(PetscArrayzero(residual, rve->length));
     PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));

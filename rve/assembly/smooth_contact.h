@@ -50,7 +50,7 @@ typedef struct {
   PetscInt base_count;      /* couplings of facing walls that have hardly slid, ... */
   PetscInt count, room;     /* ... and all at present, those of walls met since included */
   PetscInt (*pairs)[2];     /* [count] classes */
-  LamBlockEntries *entries; /* [loop][span][LAM_KEPT] of blocks met last */
+  LamBlockEntries *entries; /* [loop][span][LAM_KEPT] of blocks met last; NULL before the first assembly */
 } LamSmooth;
 
 #endif

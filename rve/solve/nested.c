@@ -12,8 +12,6 @@
 #include "contact_find.h"
 #include "mortar_impl.h"
 
-#define LARGE 2000 /* elements, from which a coarser mesh is solved first */
-
 /* Element that contains `place` (in elements) and local coordinate in [-1, 1]. */
 static PetscReal Local(PetscReal place, PetscInt elements, PetscInt *element)
 {
@@ -203,7 +201,7 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
 
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
 {
-  return (PetscBool)(rve->mesh.element_count >= LARGE && rve->micro.along > 1 && !rve->seal.allowed && !state->solved);
+  return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > 1 && !rve->seal.allowed && !state->solved);
 }
 
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response)
@@ -221,6 +219,7 @@ PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start
   nested = LamIsNested(coarse, state);
   PetscCall(LamRVESolve(coarse, load, state, coarse_response));
   if (!nested) PetscCall(NameMesh(coarse, coarse_response));
+  for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamFactorDestroy(&coarse->systems[k].factor)); /* for memory */
   if (coarse_response->status == LAM_CONVERGED) PetscCall(Prolong(coarse, state, rve, start));
   if (LamWasStopped(coarse_response)) rve->work.stopped = PETSC_TRUE;
   PetscCall(LamRVEStateDestroy(&state));

@@ -123,7 +123,6 @@ PetscErrorCode LamRVESetUp(LamRVE rve)
   if (rve->is_set_up) PetscFunctionReturn(0);
   PetscCheck(rve->has_micro, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetMicrostructure comes before LamRVESetUp");
   PetscCall(SetUpArrays(rve));
-  PetscCall(LamLinearCreateMatrix(rve->comm, rve->linear));
   rve->is_set_up = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
