@@ -188,6 +188,8 @@ PetscErrorCode LamContactFinish(LamRVE rve, const LamLoad *load, LamBorder *bord
   if (!LamIsExact(rve)) {
     PetscCall(Settle(rve, load, border, LAM_USUAL_WIDTH, out));
     if (out->found) PetscCall(TryExact(rve, load, border, at, out));
+    if (out->found && !LamIsExact(rve)) /* residual, energy and perhaps the factor are still those of the exact law */
+      PetscCall(LamFactorConsistent(rve, LoadOf(load, border), &out->negative, &out->found));
   }
   PetscCall(LamRVEStateDestroy(&at));
   PetscFunctionReturn(0);

@@ -2,6 +2,7 @@
    tells them from those of the exact law. Derivatives: test_derivatives. */
 #include "support/rve_fixture.h"
 #include "support/contact_checks.h"
+#include "support/random_contact.h"
 #include "support/turned_response.h"
 
 #define USUAL_WIDTH 3e-3 /* apothems */
@@ -238,6 +239,27 @@ TEST(PackedStateRemembersItsLaw)
   assert_near(SolveTissue(&micro, LoadOf(OPEN)).contact_width, 0.0, 0.0);
   assert_true(SolveTissue(&micro, LoadOf(SLID)).contact_width > 0.0);
   FOR_STATES(k) AssertPackedGoesOn(&micro, k);
+}
+
+/* Where the exact law is tried from a smooth state and fails, the response is that of the smooth state. */
+TEST(NothingOfAFailedExactLawIsLeft)
+{
+  uint64_t seed = 1;
+  RandomContact s;
+  LamResponse tried, alone;
+
+  for (int k = 0; k <= 3; k++) s = DrawContact(BOX_WIDE, k, 6, 2, &seed); /* it stalls at the last one */
+  OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&s.micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
+  tried = Solve(rve, s.load, at);
+  assert_true(tried.contact_width > 0.0 && tried.third_fraction < 0.01);
+
+  s.micro.sharpness = LAM_SHARPNESS_SMOOTH;
+  OWNED(LamRVE, LamRVEDestroy) smooth = NewRVE(&s.micro);
+  alone = Solve(smooth, s.load, at);
+  assert_near(LamStressError(tried.P, alone.P), 0.0, TOLERANCE);
+  assert_near(tried.energy / alone.energy, 1.0, TOLERANCE);
+  assert_near(tried.contact_error / alone.contact_error, 1.0, TOLERANCE);
 }
 
 /* A solve that has met other walls, for which the matrix has grown, leaves no trace. */
