@@ -213,12 +213,13 @@ LAM_EXPORT PetscErrorCode LamTableDestroy(LamTable *table);
 */
 LAM_EXPORT PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accuracy, LamResponse *response);
 /*
-  Keys of the nodes that the table lacks to answer this query to this accuracy, coarser ones first; *n = 0: no node
-  helps (a change of branch, a failed node, the finest level, outside the grid), only a solve of the state itself.
+  *error (may be NULL): the error estimate of this query, infinite if the table has no response. keys: of the nodes that
+  the table lacks to answer it to this accuracy, coarser ones first; *n = 0: none is missing, or no node helps (a change
+  of branch, a failed node, the finest level, outside the grid), only a solve of the state itself.
 */
 #define LAM_MAX_NEEDS 64
-LAM_EXPORT PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
-                                        PetscInt64 keys[LAM_MAX_NEEDS]);
+LAM_EXPORT PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscReal *error,
+                                        PetscInt *n, PetscInt64 keys[LAM_MAX_NEEDS]);
 /*
   The rotated or mirrored state that is equivalent to this load, with F symmetric and lattice strains ordered as those
   of nodes (rounded to 1e-10). *key: the nearest surrounding node whose solution can start its solve, -1: none.

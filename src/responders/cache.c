@@ -214,7 +214,7 @@ static PetscErrorCode FindMyNeeds(LamCache *cache, const Missing *missing, Petsc
       capacity = PetscMax(capacity, 2 * (*n + LAM_MAX_NEEDS));
       PetscCall(PetscRealloc(sizeof(PetscInt64) * (size_t)capacity, keys));
     }
-    PetscCall(LamTableNeeds(cache->newest, &question, cache->accuracy, &more, *keys + *n));
+    PetscCall(LamTableNeeds(cache->newest, &question, cache->accuracy, NULL, &more, *keys + *n));
     *n += more;
   }
   LamSortUnique(n, *keys, sizeof(PetscInt64), LamCompareKeys);

@@ -79,7 +79,7 @@ static PetscErrorCode Begin(LamVerification *v)
 static PetscErrorCode RunRoot(LamVerification *v)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchAdd(v->dispatch, 0, v->audit.answered, 1));
+  PetscCall(LamDispatchAdd(v->dispatch, 0, v->audit.answered, 0, 1));
   PetscCall(LamDispatchRun(v->dispatch, NULL, NULL, NULL));
   PetscFunctionReturn(0);
 }

@@ -36,6 +36,7 @@ PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, Pets
   chain first, parents before their children.
 */
 typedef struct {
+  PetscInt turn; /* number of the round */
   PetscInt n;
   PetscInt64 *keys;       /* [n], sorted; owned */
   LamResponse *responses; /* [n]; owned */
@@ -60,11 +61,17 @@ typedef struct {
   PetscInt64 *keys; /* [lacking] nodes to be solved, sorted; owned */
 } LamCoverage;
 
+/* What is called now and then during a long computation; NULL: nothing. */
+typedef struct {
+  PetscErrorCode (*call)(void *ctx);
+  void *ctx; /* borrowed */
+} LamMeanwhile;
+
 /* Lists lacking nodes until there are at least `enough`, starting with the grid cells needed by most states per lacking
    node. Nodes of the round `under_way` (or NULL) are left out. */
 PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, LamDatabase database,
                                   PetscReal accuracy, PetscInt enough, const LamRound *under_way,
-                                  LamCoverage *coverage);
+                                  LamMeanwhile meanwhile, LamCoverage *coverage);
 /* Whether at least 99.5 % of the states that are not refused are covered. */
 PetscBool LamCoverageIsDone(const LamCoverage *coverage);
 PetscErrorCode LamCoverageDestroy(LamCoverage *coverage);
@@ -96,8 +103,10 @@ typedef struct {
   LamCoverage coverage;    /* of the table */
   PetscInt best, idle;     /* most states covered so far; rounds in a row with little gain */
   PetscInt open;           /* number of open rounds, the older first */
+  PetscInt opened;         /* number of rounds so far */
   LamRound round[LAM_OPEN_ROUNDS];
-  PetscBool dry; /* the table lacks no nodes except those of open rounds */
+  PetscBool dry;          /* the table lacks no nodes except those of open rounds */
+  LamMeanwhile meanwhile; /* during a selection; may call LamRoundsArrive */
 } LamRounds;
 
 /* `known`: the records of the database to be resumed. Takes ownership of them and of the grid. */

@@ -8,6 +8,7 @@
 
 /* Number of states in the box; contact tissue has suction as a further dimension. */
 enum { BONDED_STATES = 2048, CONTACT_STATES = 4096 };
+enum { BETWEEN_LOOKS = 32 }; /* states: a tenth of a millisecond, short for a solve, long for a look at messages */
 #define QUANTILE 0.95
 #define ENOUGH 0.995
 
@@ -85,13 +86,11 @@ static PetscErrorCode QueryState(LamTable table, const LamLoad *load, PetscReal 
   LamResponse response;
 
   PetscFunctionBeginUser;
-  PetscCall(LamTableQuery(table, load, PETSC_INFINITY, &response));
-  *error = LamResponseHasFields(&response) ? response.error_estimate : INFINITY;
-  if (LamResponseHasFields(&response) && response.error_estimate <= accuracy) {
+  PetscCall(LamTableNeeds(table, load, accuracy, error, &need->n, need->keys));
+  if (isfinite(*error) && *error <= accuracy) {
     coverage->covered++;
     PetscFunctionReturn(0);
   }
-  PetscCall(LamTableNeeds(table, load, accuracy, &need->n, need->keys));
   if (need->n) PetscFunctionReturn(0);
   if (!coverage->refused++) {
     PetscCall(LamTableQuery(table, load, accuracy, &response));
@@ -101,7 +100,8 @@ static PetscErrorCode QueryState(LamTable table, const LamLoad *load, PetscReal 
 }
 
 PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, LamDatabase database,
-                                  PetscReal accuracy, PetscInt enough, const LamRound *under_way, LamCoverage *coverage)
+                                  PetscReal accuracy, PetscInt enough, const LamRound *under_way,
+                                  LamMeanwhile meanwhile, LamCoverage *coverage)
 {
   const PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
   PetscReal *errors, error;
@@ -117,6 +117,7 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
   for (PetscInt i = 0; i < coverage->states; i++) {
     LamLoad load;
 
+    if (meanwhile.call && i % BETWEEN_LOOKS == 0) PetscCall(meanwhile.call(meanwhile.ctx));
     LamSampleLoad(scene, states[i], &load);
     needs[n].n = 0;
     needs[n].states = 1;

@@ -67,7 +67,7 @@ static PetscErrorCode Cover(LamRounds *rounds)
   PetscCall(
       LamCoverageCompute(rounds->scene, rounds->shard, rounds->table, rounds->accuracy,
                          PetscMax(rounds->scene->sample.round / rounds->shard->count + 1, rounds->nodes / ROUND_SHARE),
-                         rounds->open ? rounds->round : NULL, &rounds->coverage));
+                         rounds->open ? rounds->round : NULL, rounds->meanwhile, &rounds->coverage));
   PetscFunctionReturn(0);
 }
 
@@ -195,7 +195,7 @@ static PetscErrorCode Sort(LamRounds *rounds, LamRound *round)
 static PetscErrorCode RoundCreate(LamRounds *rounds, PetscInt n, LamRound *round)
 {
   PetscFunctionBeginUser;
-  *round = (LamRound){.n = n};
+  *round = (LamRound){.turn = rounds->opened++, .n = n};
   PetscCall(PetscCalloc6(n, &round->keys, n, &round->responses, n, &round->order, n, &round->cost, n, &round->solved, n,
                          &round->taken));
   PetscCall(PetscArraycpy(round->keys, rounds->coverage.keys, n));

@@ -3,9 +3,10 @@
 
   Method
     In rounds (build.h): rank 0 queries the table of the complete rounds at the states of the sample box. All ranks
-    solve the nodes that it lacks, each from its parent (node_work.h), longest chain first. Nodes are committed in this
-    order, so the file does not depend on the number of ranks (except times, and checksums, which cover them). An
-    exception: an unsolved node delays the nodes after it for half a minute at most.
+    solve the nodes that it lacks, each from its parent (node_work.h), those of the older round first, so that the
+    next one is selected while the younger one is being solved, and of a round the longest chain first. Nodes are
+  committed in this order, so the file does not depend on the number of ranks (except times, and checksums, which cover
+  them). An exception: an unsolved node delays the nodes after it for half a minute at most.
 */
 #include "build_run.h"
 #include "error_model.h"
@@ -20,24 +21,25 @@ static PetscErrorCode RequestRound(LamBuild *b, const LamRound *round)
   PetscFunctionBeginUser;
   b->there += round->n - round->missing;
   for (PetscInt m = 0; m < round->missing; m++)
-    PetscCall(LamNodeWorkRequest(b->work, round->keys[round->order[m]], round->cost[m]));
+    PetscCall(LamNodeWorkRequest(b->work, round->keys[round->order[m]], round->turn, round->cost[m]));
   PetscFunctionReturn(0);
 }
 
-/* Closes complete rounds and opens the next. */
+/* Closes complete rounds and opens the next. Nodes that arrive meanwhile may complete a round. */
 static PetscErrorCode OpenRounds(LamBuild *b)
 {
+  PetscInt64 available;
   LamRound *round;
 
   PetscFunctionBeginUser;
   if (b->opening || LamStopRequested()) PetscFunctionReturn(0);
   b->opening = PETSC_TRUE;
-  for (;;) {
+  do {
     PetscCall(LamBuildTakeSolved(b, PETSC_TRUE));
+    available = LamRoundsAvailable(&b->rounds);
     PetscCall(LamRoundsNext(&b->rounds, &round));
-    if (!round) break;
-    PetscCall(RequestRound(b, round));
-  }
+    if (round) PetscCall(RequestRound(b, round));
+  } while (round || LamRoundsAvailable(&b->rounds) > available);
   b->opening = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -61,6 +63,7 @@ static PetscErrorCode SolveRounds(LamBuild *b)
 {
   PetscFunctionBeginUser;
   b->last_commit = b->last_taken = LamClock();
+  b->rounds.meanwhile = (LamMeanwhile){LamNodeWorkLook, b->work};
   PetscCall(OpenRounds(b));
   PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll));
   PetscCall(LamBuildCommitAll(b));

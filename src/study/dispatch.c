@@ -1,10 +1,10 @@
 /*
   Method
-    Waiting tasks are kept in a heap; the task of the largest predicted cost is sent first. A worker holds one task
-    beside the current one, so that it does not wait for rank 0, which handles messages between factorisations of its
-    own task. It holds no more: tasks with mispredicted costs would wait behind each other. Sends do not block. The
-    input of a task is kept until its result has arrived; a worker has one pending result. At the end rank 0 sends
-    TAG_STOP, and each worker sends TAG_LEFT after its last result, so that no message is left unreceived.
+    Waiting tasks are kept in a heap; of the lowest turn the task of the largest predicted cost is sent first. A worker
+  holds one task beside the current one, so that it does not wait for rank 0, which handles messages between
+  factorisations of its own task. It holds no more: tasks with mispredicted costs would wait behind each other. Sends do
+  not block. The input of a task is kept until its result has arrived; a worker has one pending result. At the end rank
+  0 sends TAG_STOP, and each worker sends TAG_LEFT after its last result, so that no message is left unreceived.
 
   References
     R. L. Graham, Bounds on multiprocessing timing anomalies, SIAM J. Appl. Math. 17 (1969) 416-429 (longest first).
@@ -23,6 +23,7 @@ enum { LOOK_AHEAD = 1 }; /* tasks that a worker holds beside the current one; it
 
 typedef struct {
   PetscInt64 number;
+  PetscInt turn;
   PetscReal cost;
 } Task;
 
@@ -70,6 +71,7 @@ struct LamDispatch_s {
 
 static PetscBool ComesBefore(const Task *a, const Task *b)
 {
+  if (a->turn != b->turn) return (PetscBool)(a->turn < b->turn);
   return (PetscBool)(a->cost != b->cost ? a->cost > b->cost : a->number < b->number);
 }
 
@@ -103,10 +105,10 @@ static PetscInt64 Pop(LamDispatch d)
   return first;
 }
 
-PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost)
+PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscInt turn, PetscReal cost)
 {
   PetscFunctionBeginUser;
-  for (PetscInt64 i = 0; i < count; i++) PetscCall(Push(dispatch, (Task){first + i, cost}));
+  for (PetscInt64 i = 0; i < count; i++) PetscCall(Push(dispatch, (Task){first + i, turn, cost}));
   dispatch->unfinished += count;
   PetscFunctionReturn(0);
 }
@@ -230,6 +232,13 @@ PetscBool LamDispatchInterrupt(void *dispatch)
     d->service += LamClock() - begin;
   }
   return (PetscBool)(d->ierr || d->stopping || LamStopRequested());
+}
+
+PetscErrorCode LamDispatchLook(LamDispatch dispatch)
+{
+  PetscFunctionBeginUser;
+  if (dispatch->size > 1) PetscCall(Handle(dispatch));
+  PetscFunctionReturn(0);
 }
 
 PetscReal LamDispatchServiceTime(LamDispatch dispatch)

@@ -27,8 +27,9 @@ typedef struct {
 PetscErrorCode LamDispatchCreate(MPI_Comm comm, const LamDispatchJob *job, LamDispatch *dispatch);
 PetscErrorCode LamDispatchDestroy(LamDispatch *dispatch);
 
-/* Rank 0: adds tasks first .. first + count - 1, each with this predicted cost (any unit). */
-PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscReal cost);
+/* Rank 0: adds tasks first .. first + count - 1, each with this predicted cost (any unit). Those of a lower turn are
+   done first, then those of larger cost. */
+PetscErrorCode LamDispatchAdd(LamDispatch dispatch, PetscInt64 first, PetscInt64 count, PetscInt turn, PetscReal cost);
 /*
   Rank 0: runs all tasks, including those that `worked` adds. A signal on any rank ends the run: current tasks are
   interrupted, and `stopped` (or NULL) is called with `ctx` at once, before the workers have left. Results that they
@@ -44,6 +45,8 @@ PetscErrorCode LamDispatchServe(LamDispatch dispatch);
   to be abandoned. `dispatch`: a LamDispatch.
 */
 PetscBool LamDispatchInterrupt(void *dispatch);
+/* Rank 0, in work of its own that is long for a task: handles messages that have arrived. */
+PetscErrorCode LamDispatchLook(LamDispatch dispatch);
 /* Time that this rank has spent in LamDispatchInterrupt, s. */
 PetscReal LamDispatchServiceTime(LamDispatch dispatch);
 

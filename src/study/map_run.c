@@ -149,7 +149,7 @@ static PetscErrorCode OpenWriter(LamMap *m)
 static PetscErrorCode RunRoot(LamMap *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 1));
+  PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 0, 1));
   PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, NULL));
   PetscCall(Commit(m));
   PetscFunctionReturn(0);

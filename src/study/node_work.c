@@ -6,6 +6,7 @@
 
 typedef struct Node_s {
   PetscInt64 key;
+  PetscInt turn;
   PetscReal cost;
   PetscBool requested, queued, solved, leads;
   LamResponse *response;   /* kept until it is requested; owned */
@@ -114,18 +115,19 @@ static PetscErrorCode AddTask(LamNodeWork w, Node *node, Node *parent)
     TAILQ_REMOVE(&w->states, parent, entry);
     TAILQ_INSERT_TAIL(&w->states, parent, entry);
   }
-  PetscCall(LamDispatchAdd(w->dispatch, node->key, 1, node->cost));
+  PetscCall(LamDispatchAdd(w->dispatch, node->key, 1, node->turn, node->cost));
   PetscFunctionReturn(0);
 }
 
 /* Adds the task of the node, or defers it until its parent is solved. */
-static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
+static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscInt turn, PetscReal cost)
 {
   const PetscInt64 key = w->warm ? LamGridNodeParent(w->grid, node->key) : -1;
   Node *parent = NULL;
 
   PetscFunctionBeginUser;
   node->queued = PETSC_TRUE;
+  node->turn = turn;
   node->cost = cost;
   if (key >= 0) PetscCall(GetNode(w, key, &parent));
   if (parent && parent->solved && !parent->leads) parent = NULL;
@@ -135,7 +137,7 @@ static PetscErrorCode Queue(LamNodeWork w, Node *node, PetscReal cost)
   }
   node->sibling = parent->children;
   parent->children = node;
-  if (!parent->queued) PetscCall(Queue(w, parent, cost)); /* for its state */
+  if (!parent->queued) PetscCall(Queue(w, parent, turn, cost)); /* for its state */
   PetscFunctionReturn(0);
 }
 
@@ -154,7 +156,7 @@ static PetscErrorCode QueueChildren(LamNodeWork w, Node *node)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal cost)
+PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscInt turn, PetscReal cost)
 {
   Node *node;
 
@@ -166,7 +168,7 @@ PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal co
     PetscFunctionReturn(0);
   }
   node->requested = PETSC_TRUE;
-  if (!node->queued) PetscCall(Queue(work, node, cost));
+  if (!node->queued) PetscCall(Queue(work, node, turn, cost));
   PetscFunctionReturn(0);
 }
 
@@ -238,6 +240,13 @@ PetscErrorCode LamNodeWorkServe(LamNodeWork work)
 {
   PetscFunctionBeginUser;
   PetscCall(LamDispatchServe(work->dispatch));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamNodeWorkLook(void *work)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamDispatchLook(((LamNodeWork)work)->dispatch));
   PetscFunctionReturn(0);
 }
 

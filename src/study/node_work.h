@@ -27,10 +27,13 @@ PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType 
                                  const LamNodeCallbacks *callbacks, LamNodeWork *work);
 PetscErrorCode LamNodeWorkDestroy(LamNodeWork *work);
 
-/* Rank 0: requests a node with this predicted cost. `arrived` may be called before this returns. */
-PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscReal cost);
+/* Rank 0: requests a node with this turn and predicted cost (dispatch.h). `arrived` may be called before this returns.
+ */
+PetscErrorCode LamNodeWorkRequest(LamNodeWork work, PetscInt64 key, PetscInt turn, PetscReal cost);
 /* Rank 0: returns when all requested nodes have arrived, or after a signal; `stopped` as in LamDispatchRun. */
 PetscErrorCode LamNodeWorkRun(LamNodeWork work, PetscErrorCode (*stopped)(void *ctx));
 PetscErrorCode LamNodeWorkServe(LamNodeWork work); /* workers */
+/* Rank 0, in work of its own: nodes may arrive and others are handed out. `work`: a LamNodeWork. */
+PetscErrorCode LamNodeWorkLook(void *work);
 
 #endif

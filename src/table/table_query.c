@@ -336,7 +336,8 @@ static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
   return Refuse(r, "the estimated error is %.2g %%, the accuracy is %.2g %%", 100 * r->error_estimate, 100 * accuracy);
 }
 
-static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)
+/* All of the response that follows from the potential, and P33. PETSC_FALSE: the table has no response. */
+static PetscBool Fill(LamTable table, Place *place, LamResponse *r)
 {
   PetscReal along_strain = 0, along_suction = 0;
   Potential potential;
@@ -345,16 +346,20 @@ static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse
     LamTableAddFloating(table, &place->point, &place->sum);
   else if (place->leaf && place->good)
     Estimates(table, place, &along_strain, &along_suction);
-  else {
-    Accept(place, accuracy, r);
-    return;
-  }
+  else
+    return PETSC_FALSE;
   Unsort(table, place, &potential);
   if (table->grid->contact) TauToSuction(table, place, &potential);
   FillPotential(table, place, &potential, r);
   LamTableThickness(table, &place->point, place->leaf, &place->lattice, r);
   r->error_estimate =
       place->floating ? FloatingError(table->grid, &place->point) : Relative(hypot(along_strain, along_suction), r->P);
+  return PETSC_TRUE;
+}
+
+static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)
+{
+  (void)Fill(table, place, r);
   if (!Accept(place, accuracy, r)) return;
   LamTableIndicators(table, &place->point, place->leaf, r);
   r->status = LAM_CONVERGED;
@@ -445,7 +450,7 @@ static PetscBool IsOutside(LamTable table, const Place *place)
   return PETSC_FALSE;
 }
 
-PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscInt *n,
+PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accuracy, PetscReal *error, PetscInt *n,
                              PetscInt64 keys[LAM_MAX_NEEDS])
 {
   Needs needs = {table, n, keys, PETSC_FALSE};
@@ -456,10 +461,14 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(LamTableQuery(table, load, accuracy, &response));
-  if (response.status != LAM_OUT_OF_REACH) PetscFunctionReturn(0);
-  if (!LamLoadValidate(load, &response) || !Locate(table, load, &place, &response) || IsOutside(table, &place))
-    PetscFunctionReturn(0);
+  if (error) *error = PETSC_INFINITY;
+  PetscCall(LamResponseInit(load, &response));
+  if (!LamLoadValidate(load, &response) || !Locate(table, load, &place, &response)) PetscFunctionReturn(0);
+  if (Fill(table, &place, &response)) {
+    if (error) *error = response.error_estimate;
+    if (response.error_estimate <= accuracy) PetscFunctionReturn(0);
+  }
+  if (IsOutside(table, &place)) PetscFunctionReturn(0);
   CommonInterval(table, place.leaf, &place.point, ends);
   if (!place.leaf)
     NeedCell(&needs, &place.point, 0, ends);

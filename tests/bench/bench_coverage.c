@@ -30,7 +30,7 @@ static PetscErrorCode Cover(const LamScene *scene, LamDatabase file, PetscInt n)
   PetscCall(LamDatabaseAdd(table, n, keys, records));
   PetscCall(LamDatabaseSetGrid(table, &grid));
   begin = ProcessorSeconds();
-  PetscCall(LamCoverageCompute(scene, &whole, table, scene->accuracy, n, NULL, &coverage));
+  PetscCall(LamCoverageCompute(scene, &whole, table, scene->accuracy, n, NULL, (LamMeanwhile){0}, &coverage));
   printf("%8" PetscInt_FMT " nodes: %5.0f ms for %" PetscInt_FMT " states, %" PetscInt_FMT " nodes lacking\n", n,
          1e3 * (ProcessorSeconds() - begin), coverage.states, coverage.lacking);
   PetscCall(LamCoverageDestroy(&coverage));

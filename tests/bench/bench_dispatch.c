@@ -84,7 +84,7 @@ static PetscErrorCode OpenRound(Work *w)
   w->missing[1] = n;
   w->second = w->added;
   for (PetscInt64 i = 0; i < n; i++, w->added++)
-    PetscCall(LamDispatchAdd(w->dispatch, w->added, 1, 1 + TimeOf(w, w->added)));
+    PetscCall(LamDispatchAdd(w->dispatch, w->added, 1, 0, 1 + TimeOf(w, w->added)));
   PetscFunctionReturn(0);
 }
 

@@ -346,7 +346,7 @@ static PetscErrorCode Lacking(const Bench *bench, LamTable table, PetscReal accu
     PetscInt more;
 
     LamSampleLoad(bench->scene, QUESTIONS + i, &load);
-    PetscCall(LamTableNeeds(table, &load, accuracy, &more, *keys + n));
+    PetscCall(LamTableNeeds(table, &load, accuracy, NULL, &more, *keys + n));
     n += more;
   }
   qsort(*keys, (size_t)n, sizeof(**keys), CompareKeys);

@@ -14,7 +14,7 @@ PetscErrorCode RefineTable(LamDatabase database, LamResponder solver, const LamL
 
     PetscCall(LamDatabaseGetGrid(database, &grid));
     PetscCall(LamDatabaseGetTable(database, &table));
-    PetscCall(LamTableNeeds(table, load, accuracy, &n, keys));
+    PetscCall(LamTableNeeds(table, load, accuracy, NULL, &n, keys));
     PetscCall(LamTableDestroy(&table));
     for (PetscInt k = 0; k < n; k++) {
       LamLoad node;

@@ -165,7 +165,7 @@ static void RefineAround(Fixture *fixture, const LamLoad *load)
 
   for (int round = 0; round < 4; round++) {
     CHECK(LamDatabaseGetTable(fixture->database, &table));
-    CHECK(LamTableNeeds(table, load, 1e-6, &n, keys));
+    CHECK(LamTableNeeds(table, load, 1e-6, NULL, &n, keys));
     for (PetscInt k = 0; k < n; k++) CHECK(SolveNode(fixture, keys[k], &records[k]));
     CHECK(LamDatabaseAdd(fixture->database, n, keys, records));
     CHECK(LamTableDestroy(&table));

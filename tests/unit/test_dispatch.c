@@ -60,7 +60,7 @@ static PetscErrorCode Worked(void *ctx, PetscInt64 task, const void *result)
   if (*(const char *)result != (task & 127)) return PETSC_ERR_PLIB;
   run->done[task]++;
   run->order[run->count++] = task;
-  if (run->more-- > 0) CHECK(LamDispatchAdd(run->dispatch, task + TASKS, 1, 1));
+  if (run->more-- > 0) CHECK(LamDispatchAdd(run->dispatch, task + TASKS, 1, 0, 1));
   return run->count == run->fail_after ? PETSC_ERR_USER : 0;
 }
 
@@ -89,7 +89,7 @@ TEST(test_all_once)
   if (run.rank) {
     CHECK(LamDispatchServe(run.dispatch));
   } else {
-    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 1));
+    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 0, 1));
     CHECK(LamDispatchRun(run.dispatch, Stopped, &run, &complete));
     assert_true(complete);
     assert_false(run.stopped);
@@ -110,7 +110,7 @@ TEST(test_longest_first)
     CHECK(LamDispatchServe(run.dispatch));
   } else {
     for (PetscInt64 i = 0; i < TASKS; i++)
-      CHECK(LamDispatchAdd(run.dispatch, i * 7 % TASKS, 1, (PetscReal)(TASKS - i * 7 % TASKS)));
+      CHECK(LamDispatchAdd(run.dispatch, i * 7 % TASKS, 1, 0, (PetscReal)(TASKS - i * 7 % TASKS)));
     CHECK(LamDispatchRun(run.dispatch, NULL, NULL, &complete));
     for (PetscInt64 i = 0; i < TASKS && run.size == 1; i++) assert_int_equal(run.order[i], i);
     assert_int_equal(run.count, TASKS);
@@ -130,7 +130,7 @@ TEST(test_error)
   if (run.rank) {
     CHECK(LamDispatchServe(run.dispatch));
   } else {
-    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 1));
+    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 0, 1));
     ierr = LamDispatchRun(run.dispatch, Stopped, &run, &complete);
     assert_int_equal(run.count, FAIL_AFTER);
   }
@@ -151,7 +151,7 @@ TEST(test_signal)
   if (run.rank) {
     CHECK(LamDispatchServe(run.dispatch));
   } else {
-    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 1));
+    CHECK(LamDispatchAdd(run.dispatch, 0, TASKS, 0, 1));
     CHECK(LamDispatchRun(run.dispatch, Stopped, &run, &complete));
     assert_true(run.stopped);
     assert_false(complete);

@@ -38,7 +38,7 @@ static PetscInt Fill(LamDatabase database, PetscReal accuracy, LamStatus last)
 
   assert_int_equal(LamDatabaseGetGrid(database, &grid), 0);
   assert_int_equal(LamDatabaseGetTable(database, &table), 0);
-  assert_int_equal(LamTableNeeds(table, &load, accuracy, &n, keys), 0);
+  assert_int_equal(LamTableNeeds(table, &load, accuracy, NULL, &n, keys), 0);
   for (PetscInt i = 0; i < n; i++) {
     LamResponse response;
     LamLoad node;

@@ -12,7 +12,7 @@ static PetscInt Needs(const AnalyticTable *t, const LamLoad *load, double accura
   PetscInt n;
 
   CHECK(LamDatabaseGetTable(t->database, &table));
-  CHECK(LamTableNeeds(table, load, accuracy, &n, keys));
+  CHECK(LamTableNeeds(table, load, accuracy, NULL, &n, keys));
   return n;
 }
 

@@ -205,7 +205,7 @@ static void check_shift(const char scene[], LamLoad near, PetscReal d)
   Start(scene, &t);
   assert_int_equal(LamDatabaseGetGrid(t.database, &grid), 0);
   assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
-  assert_int_equal(LamTableNeeds(table, &near, 1, &n, keys), 0);
+  assert_int_equal(LamTableNeeds(table, &near, 1, NULL, &n, keys), 0);
   assert_int_equal(LamTableDestroy(&table), 0);
   assert_int_equal(RefineTable(t.database, t.solver, &near, PETSC_INFINITY), 0);
   assert_int_equal(LamDatabaseGetTable(t.database, &table), 0);
