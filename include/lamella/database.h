@@ -186,7 +186,7 @@ LAM_EXPORT PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad 
 LAM_EXPORT PetscInt LamGridNodeLevel(LamGrid grid, PetscInt64 key);
 /* Position of the node for distances: three lattice strains and the logarithm of suction, in edges of root cells. */
 LAM_EXPORT void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4]);
-/* The node whose solution may start a solve of this one: the nearest of the next coarser level; -1: the reference. */
+/* The node whose solution may start a solve of this one: the next one towards coarser nodes; -1: the reference. */
 LAM_EXPORT PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key);
 
 /* Adds records in memory, available to queries at once. keys: of nodes, or NULL: states off the grid. */

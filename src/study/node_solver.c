@@ -70,70 +70,34 @@ PetscBool LamNodeLeads(const LamResponse *response)
   return (PetscBool)(response->status == LAM_CONVERGED && !response->branch && response->floating_cells <= 0);
 }
 
-/* Largest change of F, turgor or cohesion taken in one step. Larger changes take steps of SUBSTEP; after a step of
-   no more than EASY factorisations the next is twice as large, up to MOST_SUBSTEPS. Eight steps of SUBSTEP cost a
-   sixth of a start for which the contact set must be searched from scratch. */
-#define ONE_STEP 0.04
-#define SUBSTEP 0.0075
-enum { EASY = 10, MOST_SUBSTEPS = 5 };
-
-static PetscInt StepCount(const LamLoad *from, const LamLoad *to)
-{
-  PetscReal largest = PetscMax(PetscAbsReal(to->turgor - from->turgor), PetscAbsReal(to->cohesion - from->cohesion));
-
-  for (int i = 0; i < 9; i++) largest = PetscMax(largest, PetscAbsReal(to->F[i] - from->F[i]));
-  return largest <= ONE_STEP ? 1 : (PetscInt)PetscCeilReal(largest / SUBSTEP);
-}
-
-static void AddEffort(const LamResponse *step, LamResponse *sum)
-{
-  sum->newton_iterations += step->newton_iterations;
-  sum->factorisations += step->factorisations;
-  sum->seconds += step->seconds;
-}
-
-/* Starts from `state`, the solution at `from`; from the reference if `from` is NULL or continuation from it fails. */
-static PetscErrorCode SolveFrom(LamRVE rve, const LamLoad *from, const LamLoad *load, LamRVEState state,
+/* Starts from `state`, a solution; from the reference if `from_state` is false or continuation fails. */
+static PetscErrorCode SolveFrom(LamRVE rve, PetscBool from_state, const LamLoad *load, LamRVEState state,
                                 LamResponse *response)
 {
-  const PetscInt steps = from ? StepCount(from, load) : 0;
-  PetscInt stride = 1;
-  LamResponse effort = {.status = LAM_CONVERGED};
+  LamResponse failed = {0};
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < steps && effort.status == LAM_CONVERGED;) {
-    const PetscInt end = PetscMin(k + stride, steps);
-    const LamLoad next = LamLoadBetween(from, load, (PetscReal)end / (PetscReal)steps);
-
-    PetscCall(LamRVESolve(rve, &next, state, response));
-    AddEffort(response, &effort);
-    if (response->status == LAM_CONVERGED)
-      k = end;
-    else if (end == k + 1 || response->status == LAM_OUT_OF_REACH) /* no smaller step; stopped */
-      effort.status = response->status;
-    stride =
-        response->status == LAM_CONVERGED && response->factorisations <= EASY ? PetscMin(2 * stride, MOST_SUBSTEPS) : 1;
-  }
-  if (!steps || effort.status != LAM_CONVERGED) {
-    PetscCall(LamRVEStateReset(rve, state));
+  if (from_state) {
     PetscCall(LamRVESolve(rve, load, state, response));
-    AddEffort(response, &effort);
+    if (response->status == LAM_CONVERGED) PetscFunctionReturn(0);
+    failed = *response;
   }
-  response->newton_iterations = effort.newton_iterations;
-  response->factorisations = effort.factorisations;
-  response->seconds = effort.seconds;
+  PetscCall(LamRVEStateReset(rve, state));
+  PetscCall(LamRVESolve(rve, load, state, response));
+  response->newton_iterations += failed.newton_iterations;
+  response->factorisations += failed.factorisations;
+  response->seconds += failed.seconds;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamNodeSolve(LamRVE rve, LamGrid grid, PetscInt64 key, PetscBool from_parent, LamRVEState state,
                             LamResponse *response)
 {
-  LamLoad load, parent;
+  LamLoad load;
 
   PetscFunctionBeginUser;
   PetscCall(LamGridNodeLoad(grid, key, &load));
-  if (from_parent) PetscCall(LamGridNodeLoad(grid, LamGridNodeParent(grid, key), &parent));
-  PetscCall(SolveFrom(rve, from_parent ? &parent : NULL, &load, state, response));
+  PetscCall(SolveFrom(rve, from_parent, &load, state, response));
   PetscFunctionReturn(0);
 }
 
@@ -171,7 +135,6 @@ PetscErrorCode LamNodeChainSolveNear(void *ctx, PetscInt64 key, const LamLoad *l
 {
   LamNodeChain chain = ctx;
   PetscBool leads = PETSC_FALSE;
-  LamLoad from;
   Node *node;
 
   PetscFunctionBeginUser;
@@ -180,8 +143,7 @@ PetscErrorCode LamNodeChainSolveNear(void *ctx, PetscInt64 key, const LamLoad *l
     leads = LamNodeLeads(&node->response);
     if (leads) PetscCall(LamRVEStateCopy(node->state, chain->state));
   }
-  PetscCall(LamGridNodeLoad(chain->grid, key, &from));
-  PetscCall(SolveFrom(chain->rve, leads ? &from : NULL, load, chain->state, response));
+  PetscCall(SolveFrom(chain->rve, leads, load, chain->state, response));
   PetscFunctionReturn(0);
 }
 

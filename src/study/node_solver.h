@@ -1,5 +1,5 @@
 /*
-  Solves nodes of a database's grid, each from the state of its parent: the nearest node of the next coarser level.
+  Solves nodes of a database's grid, each from the state of its parent: the next one towards coarser nodes.
 
   So a node is on the same branch as its neighbours, and its response depends on its key alone: not on the rank, on
   earlier solves, or on the contents of a file. Its parent is solved in the same way, and so on up to the reference

@@ -114,6 +114,18 @@ static int Floor(int i, int bits)
   return (i >> bits) * (1 << bits);
 }
 
+/* Moves a place towards coarser ones along one axis, the last one off these (and axes equal to it, which stay so): a
+   step is no longer than an edge, and most of the places on the way are nodes of the same cell, needed with this one.
+ */
+static void MoveToCoarser(int bits, int i[3])
+{
+  int k = 2;
+
+  while (Floor(i[k], bits) == i[k]) k--;
+  for (int l = 0; l <= k; l++)
+    if (i[l] == i[k]) i[l] = Floor(i[l], bits);
+}
+
 void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4])
 {
   const LamNodePlace at = LamNodePlaceOf(key);
@@ -130,7 +142,7 @@ PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
 
   if (!level && !suction_level) return -1;
   if (level >= suction_level)
-    for (int k = 0; k < 3; k++) place.i[k] = Floor(place.i[k], LAM_FINEST - level + 1);
+    MoveToCoarser(LAM_FINEST - level + 1, place.i);
   else /* the higher suction, where cells hold together more firmly */
     place.j = Floor(place.j + (1 << (LAM_FINEST - suction_level)), LAM_FINEST - suction_level + 1);
   return LamNodeKeyOf(&place);
