@@ -59,7 +59,8 @@ PetscErrorCode LamBuildDestroy(LamBuild *build); /* also destroys its scene, if 
 
 /* ---- build_start.c ---- */
 
-/* Rank 0: opens or creates the file and its grid with the records of free cells; creates the rounds. Needs the RVE. */
+/* Opens or creates, on rank 0, the file and its grid with the records of free cells, which all leaders solve; creates
+   the rounds. Needs the RVE. Collective over the leaders. */
 PetscErrorCode LamBuildStart(LamBuild *build);
 
 /* ---- build_commit.c: rank 0 ---- */

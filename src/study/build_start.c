@@ -1,7 +1,8 @@
 /*
-  Opening the file of a build and its grid. Rank 0.
+  Opening the file of a build and its grid. Rank 0; the others help to solve the records of free cells.
 */
 #include "build_run.h"
+#include "spread.h"
 #include <unistd.h>
 
 /* *exists: the file is there; its records are `known`. */
@@ -79,19 +80,35 @@ static PetscErrorCode OldGrid(LamBuild *b, const LamKnownRecords *known, LamResp
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBuildStart(LamBuild *b)
+static PetscErrorCode Open(LamBuild *b, LamResponder solver)
 {
   LamKnownRecords known = {0};
-  LamResponder solver;
   PetscBool exists;
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
   PetscCall(OpenWriter(b, &exists, &known));
   PetscCall(exists ? OldGrid(b, &known, solver, &grid) : NewGrid(b, &known, solver, &grid));
-  PetscCall(LamResponderDestroy(&solver));
   PetscCall(LamRoundsCreate(b->scene, &b->shard, &known, &grid, &b->rounds));
   b->there = b->rounds.nodes - b->added;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBuildStart(LamBuild *b)
+{
+  LamResponder solver, spread;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEResponderCreate(b->rve, 0, &solver));
+  if (b->rank) {
+    ierr = LamSpreadServe(b->leaders, solver);
+  } else {
+    PetscCall(LamSpreadCreate(b->leaders, solver, &spread));
+    ierr = Open(b, spread);
+    PetscCall(LamResponderDestroy(&spread));
+  }
+  PetscCall(LamResponderDestroy(&solver));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }

@@ -100,7 +100,7 @@ static PetscErrorCode RunLeader(LamBuild *b)
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneRVECreate(b->team, b->scene, &b->rve));
-  ierr = root ? LamBuildStart(b) : 0;
+  ierr = LamBuildStart(b);
   if (ierr) (void)LamRecordWriterClose(&b->writer);
   PetscCall(LamShareError(b->leaders, ierr));
   PetscCall(ShareGrid(b));
