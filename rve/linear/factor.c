@@ -27,8 +27,8 @@ struct LamFactor_s {
   PetscInt margin;     /* workspace margin of MUMPS, per cent; the same on all ranks */
   LamLDL ldl;          /* tried first; NULL: too large */
   PetscBool unpivoted; /* `ldl` holds the present factor */
-  Mat matrix, factor;
-  Vec rhs, solution; /* placeholders for the callers' arrays */
+  Mat matrix, factor;  /* NULL before the first factorisation with pivoting, as the following are */
+  Vec rhs, solution;   /* placeholders for the callers' arrays */
 };
 
 typedef enum { ORDER_CREATE, ORDER_NUMERIC, ORDER_SOLVE, ORDER_DESTROY, ORDER_DISMISS } OrderType;
@@ -180,7 +180,6 @@ PetscErrorCode LamFactorCreate(MPI_Comm comm, PetscInt n, PetscInt row[], PetscI
     Team[f->number] = f;
   }
   PetscCall(Announce(f, ORDER_CREATE));
-  PetscCall(CreateMatrix(f));
   if (f->size == 1) PetscCall(LamLDLCreate(n, positions, row, column, values, &f->ldl));
   *factor = f;
   PetscFunctionReturn(0);
@@ -201,7 +200,7 @@ static PetscErrorCode TryUnpivoted(LamFactor f, PetscInt most, PetscInt *negativ
 
 PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool *ok)
 {
-  Mat rows = factor->matrix;
+  Mat rows;
   PetscScalar *array; /* on one rank this is factor->values; accessed through PETSc so that the change is registered */
 
   PetscFunctionBeginUser;
@@ -209,6 +208,8 @@ PetscErrorCode LamFactorNumeric(LamFactor factor, PetscInt *negative, PetscBool 
   PetscCall(TryUnpivoted(factor, factor->n, negative, ok));
   if (*ok) PetscFunctionReturn(0);
   PetscCall(Announce(factor, ORDER_NUMERIC));
+  if (!factor->matrix) PetscCall(CreateMatrix(factor));
+  rows = factor->matrix;
   if (factor->size > 1) PetscCall(MatGetDiagonalBlock(factor->matrix, &rows));
   PetscCall(MatSeqSBAIJGetArray(rows, &array));
   if (array != factor->values) PetscCall(PetscArraycpy(array, factor->values, factor->nonzeros));
@@ -294,7 +295,6 @@ static PetscErrorCode Join(MPI_Comm comm, const Order *order)
   f->margin = WORKSPACE;
   f->number = order->number;
   f->n = order->n;
-  PetscCall(CreateMatrix(f));
   Team[f->number] = f;
   PetscFunctionReturn(0);
 }
@@ -311,6 +311,7 @@ PetscErrorCode LamRVEServe(MPI_Comm comm, PetscBool (*waiting)(void *ctx), void 
 
     PetscCall(Await(comm, waiting, ctx, &order));
     if (order.type == ORDER_CREATE) PetscCall(Join(comm, &order));
+    if (order.type == ORDER_NUMERIC && !Team[order.number]->matrix) PetscCall(CreateMatrix(Team[order.number]));
     if (order.type == ORDER_NUMERIC) PetscCall(Numeric(Team[order.number], &negative, &ok));
     if (order.type == ORDER_SOLVE) PetscCall(Solve(Team[order.number], nothing, nothing));
     if (order.type == ORDER_DESTROY) PetscCall(Free(Team[order.number]));
