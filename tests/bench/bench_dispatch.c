@@ -78,13 +78,14 @@ static PetscErrorCode OpenRound(Work *w)
 {
   const PetscInt64 round = w->in_rounds ? PetscMax(LEAST_ROUND, w->done / ROUND_SHARE) : w->tasks;
   const PetscInt64 n = PetscMin(round, w->tasks - w->added);
+  const PetscInt turn = (PetscInt)w->added; /* the older round first */
 
   PetscFunctionBeginUser;
   w->missing[0] = w->missing[1];
   w->missing[1] = n;
   w->second = w->added;
   for (PetscInt64 i = 0; i < n; i++, w->added++)
-    PetscCall(LamDispatchAdd(w->dispatch, w->added, 1, 0, 1 + TimeOf(w, w->added)));
+    PetscCall(LamDispatchAdd(w->dispatch, w->added, 1, turn, 1 + TimeOf(w, w->added)));
   PetscFunctionReturn(0);
 }
 
