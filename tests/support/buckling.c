@@ -17,7 +17,7 @@ PetscErrorCode SolveSymmetric(LamRVE rve, const LamLoad *load, PetscBool *ok)
 
     PetscCall(LamAssemble(rve, load, rve->y, &energy, rve->residual, ok));
     if (!*ok || LamResidualNorm(rve, rve->residual) <= LamNewtonTolerance(rve)) PetscFunctionReturn(0);
-    PetscCall(LamLinearFactor(rve->linear, 0.0, &negative, ok));
+    PetscCall(LamRVEFactor(rve, 0.0, &negative, ok));
     PetscCall(LamLinearSolve(rve->linear, 1, rve->residual + 2, rve->step + 2));
     rve->step[0] = rve->step[1] = 0.0;
     for (PetscInt i = 2; i < rve->ndof; i++) rve->step[i] = -rve->step[i];
