@@ -130,6 +130,13 @@ typedef struct {
   PetscReal share;
 } LamStressControl;
 
+/* The areas that a prescribed stress counts on. */
+#define LAM_AREAS(X)                                                                                                   \
+  X(LAM_AREA_REST, "rest")                                                                                             \
+  X(LAM_AREA_INFLATED, "inflated")
+typedef enum { LAM_AREAS(LAM_ENUM_ENTRY) LAM_AREA_COUNT } LamArea;
+LAM_EXPORT extern const char *const LamAreaNames[]; /* "rest", "inflated" */
+
 /* The box of states that `build` covers. */
 typedef struct {
   PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
@@ -365,6 +372,8 @@ typedef struct {
   PetscInt load_count;
   LamLoad *loads;             /* states 1..load_count with ramps expanded; owned */
   LamStressControl *controls; /* of the loads; NULL: F is given in all of them; owned */
+  PetscBool inflate;          /* the first load is P = 0, in the plane; F of the others counts from there, ... */
+  LamArea area;               /* ... and their P is per this area */
   PetscBool has_sample;
   LamSample sample;
   PetscBool has_macro;

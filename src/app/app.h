@@ -6,6 +6,7 @@
 #define LAM_APP_H
 
 #include "failure.h"
+#include "mechanical_test.h"
 #include "plan.h"
 #include "study.h"
 #include "tradeoff.h"
@@ -128,6 +129,14 @@ json_t *LamPlaceToJSON(const PetscReal place[3]);
 PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scales, PetscBool json);
 /* Prints one JSON object {"onset": {...}} or a few human-readable lines on stdout. */
 PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
+
+/* ---- test_print.c ---- */
+#define LAM_MOST_STRAINS 16
+/* What is read off the curve of a mechanical test, and its moduli at strains; in JSON one object, none without a curve.
+ */
+PetscErrorCode LamTestPrint(const LamTest *test, PetscInt count, const PetscReal strain[], PetscBool json);
+/* Reads numbers between commas, at most LAM_MOST_STRAINS; PETSC_FALSE: the text is something else. */
+PetscBool LamTestReadStrains(const char text[], PetscInt *count, PetscReal strain[LAM_MOST_STRAINS]);
 
 /* ---- tradeoff_plot.c ---- */
 /* Draws the diagram; the ending of `path` selects the format. */

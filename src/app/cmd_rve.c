@@ -14,6 +14,9 @@ typedef struct {
   LamConsole console; /* the reporter's ctx; first */
   const char *scene_path;
   PetscBool tangent;
+  const char *at; /* strains at which moduli are read off; NULL: none */
+  PetscInt at_count;
+  PetscReal strain[LAM_MOST_STRAINS];
   LamRVERun run;
 } Command;
 
@@ -88,6 +91,19 @@ static PetscErrorCode SetCellDifference(json_t *object, const LamRVERun *run, co
   PetscFunctionReturn(0);
 }
 
+static void SetFromInflated(json_t *object, const LamRVERun *run, const LamResponse *response)
+{
+  PetscReal F[9], P[9];
+  json_t *test;
+
+  if (!run->scene->inflate || !LamResponseHasFields(response)) return;
+  test = json_object();
+  LamTestMeasures(&run->test, response, F, P);
+  json_object_set_new(test, "F", LamJSONReals(9, F, 1));
+  json_object_set_new(test, "P", LamJSONReals(9, P, run->scene->scales.stress * 1e-6));
+  json_object_set_new(object, "from_inflated", test);
+}
+
 static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, const LamResponse responses[2])
 {
   const LamScales *scales = &run->scene->scales;
@@ -96,6 +112,7 @@ static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, 
   PetscFunctionBeginUser;
   PetscCall(LamResponseToJSON(&responses[0], scales, run->solved, command->tangent, &object));
   SetPrescribed(object, LamRVERunControl(run, run->solved), scales->stress * 1e-6);
+  SetFromInflated(object, run, &responses[0]);
   PetscCall(SetCellDifference(object, run, &responses[0]));
   if (run->second_mesh) SetSecondMesh(object, responses);
   PetscCall(LamPrintJSON(object));
@@ -107,24 +124,30 @@ static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse 
 {
   const Command *command = (const Command *)ctx;
   const LamScales *scales = &run->scene->scales;
+  LamResponse shown = responses[0];
 
   PetscFunctionBeginUser;
   if (command->console.json) {
     PetscCall(PrintObject(command, run, responses));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamPrintResponseRow(&responses[0], scales, run->scene->micro.interface, run->solved));
+  if (run->scene->inflate) LamTestMeasures(&run->test, &responses[0], shown.load.F, shown.P);
+  PetscCall(LamPrintResponseRow(&shown, scales, run->scene->micro.interface, run->solved));
   if (run->second_mesh) PrintSecondMesh(responses);
   if (run->find_failure) LamFailurePrintState(&responses[0], &run->scene->strength, scales);
   if (command->tangent) PrintTangent(&responses[0], scales->stress * 1e-6);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReportEnd(const LamRVERun *run, PetscBool json)
+static PetscErrorCode ReportEnd(const Command *command)
 {
+  const LamRVERun *run = &command->run;
+  const PetscBool json = command->console.json;
+
   PetscFunctionBeginUser;
   if (run->find_onset) PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, json));
   if (run->find_failure) PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, json));
+  if (run->readings) PetscCall(LamTestPrint(&run->test, command->at_count, command->strain, json));
   if (json) PetscFunctionReturn(0);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " states solved, %" PetscInt_FMT " failed, %.3g s\n",
          run->solved - run->failed, run->scene->load_count, run->failed, LamClock() - run->start);
@@ -183,7 +206,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     if (!console->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface, LAM_SOURCE_SOLVE));
     PetscCall(LamRVERunSolve(run));
     LamConsoleClear(console);
-    PetscCall(ReportEnd(run, console->json));
+    PetscCall(ReportEnd(command));
     *exit_status = ExitStatus(run);
   }
   PetscCall(LamRVERunDestroy(run));
@@ -210,6 +233,11 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
        &run->find_failure},
       {0, "global", LAM_OPTION_FLAG, NULL,
        "contact: start each state from the undeformed tissue, too, and take that of lowest energy", &run->global},
+      {0, "readings", LAM_OPTION_FLAG, NULL,
+       "modulus, peak and energy, read off the stress-strain curve (always where the load begins with inflate)",
+       &run->readings},
+      {0, "at", LAM_OPTION_TEXT, "STRAIN,...", "moduli at these strains of the curve, too (includes --readings)",
+       &command.at},
       {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run->no_estimate},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run->monitor},
@@ -220,11 +248,17 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(
       LamOptionsParse(args,
-                      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--global] "
-                      "[--no-estimate]\n           [--monitor] [--quiet]",
+                      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--readings]\n"
+                      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]",
                       "Solves the representative volume element along the scene's load.", options, 1,
                       &command.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
+  if (command.at && !LamTestReadStrains(command.at, &command.at_count, command.strain)) {
+    (void)LamUsageError("rve", exit_status, "--at %s: give at most %d strains, such as --at 0.01,0.05", command.at,
+                        LAM_MOST_STRAINS);
+    PetscFunctionReturn(0);
+  }
+  if (command.at) run->readings = PETSC_TRUE;
   if (run->find_onset) run->second_mesh = PETSC_TRUE;
   PetscCall(args->start(args));
   if (LamAppIsRoot()) {

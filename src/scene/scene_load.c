@@ -3,10 +3,18 @@
 */
 #include "scene_rows.h"
 
+const char *const LamAreaNames[] = {LAM_AREAS(LAM_NAME_ENTRY)};
+
 static const LamKey load_keys[] = {
     {LIST("load"), .example = "[{F: [[1, 0.1], [0, 1]]}]",
      .help = "States for `lamella rve`, numbered from 1, each starting from the one before."},
-    {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}", .help = "One state (`F`) or several (`ramp`)."},
+    {MAP("load[]"), .example = "{F: [[1, 0.1], [0, 1]]}",
+     .help = "One state (`F`) or several (`ramp`); the first entry may be `inflate`."},
+    {BOOL("load[].inflate"), .example = "true",
+     .help = "In the first entry: the tissue free of stress in the plane, under its turgor, with F12 = F21 = 0. F of "
+             "the other entries counts from there."},
+    {NAME("load[].reference", LamAreaNames), .default_words = "`rest`",
+     .help = "Beside `inflate`: whether P, given and told, is per area of the tissue at rest or of the inflated one."},
     {TENSOR("load[].F"), FREE, FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
      .help = "Deformation gradient, rows first. 2x2: plane strain; 3x3: with F33 > 0, out-of-plane shears 0. Its "
              "determinant is positive. `free` where `P` is given instead; F12 and F21 not both."},
@@ -141,10 +149,22 @@ PetscErrorCode LamSceneCheckF(const LamNode *node)
 static PetscErrorCode ReadTarget(const LamNode *entry, Target *target)
 {
   const LamNode *F = LamNodeFind(entry, "F"), *P = LamNodeFind(entry, "P");
-  const LamNode *ramp = LamNodeFind(entry, "ramp");
+  const LamNode *ramp = LamNodeFind(entry, "ramp"), *inflate = LamNodeFind(entry, "inflate");
+  const LamNode *reference = LamNodeFind(entry, "reference");
 
   PetscFunctionBeginUser;
   *target = (Target){F, P, 1};
+  LamSceneCheckName(inflate || !reference, reference, "says what stresses count from beside inflate: true; write that");
+  if (inflate) {
+    LamSceneCheck(inflate->value.number[0] != 0.0, inflate, "is what an entry without it is; leave it out");
+    LamSceneCheckName(entry->index == 1, inflate, "is for the first entry: what follows counts from there");
+    LamSceneCheckName(!F && !P && !ramp,
+                      F   ? F
+                      : P ? P
+                          : ramp,
+                      "stands beside inflate, which is a state of its own; write it into an entry after it");
+    PetscFunctionReturn(0);
+  }
   LamSceneCheckName(!F || !ramp, ramp, "given together with F; an entry holds one of them");
   LamSceneRequire(F || ramp, entry, "F", "missing; write F: %s, or a ramp: {to: %s, steps: 10%s}",
                   P ? "[[free, 0.1], [0, free]] beside P" : "[[1, 0.1], [0, 1]]",
@@ -186,6 +206,27 @@ static void StepF(const PetscReal start[9], const PetscReal end[9], const LamStr
   }
 }
 
+/* The first entry, where it is that of the inflated tissue: F = I is the guess. */
+static PetscErrorCode BuildInflated(const LamNode *entry, LamScene *scene)
+{
+  const LamNode *reference = LamNodeFind(entry, "reference");
+
+  PetscFunctionBeginUser;
+  LamSceneRequire(scene->turgor != 0.0 || LamNodeFind(entry, "turgor"), entry, "turgor",
+                  "missing, and rve.turgor is, too: nothing inflates the tissue; write turgor: 0.1 MPa");
+  scene->loads[0] = (LamLoad){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  PetscCall(BuildPressures(entry, scene, &scene->loads[0]));
+  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_CONTACT || scene->loads[0].cohesion > 0.0,
+                    LamNodeFind(entry, "inflate"),
+                    "free tissue of law: contact is held together by the lamella alone, and there is no cohesion; give "
+                    "interface.cohesion > 0, or leave inflate out");
+  scene->controls[0] = (LamStressControl){.given = {[0] = PETSC_TRUE, [4] = PETSC_TRUE}, .share = 1.0};
+  scene->inflate = PETSC_TRUE;
+  if (reference) scene->area = (LamArea)reference->value.number[0];
+  scene->load_count = 1;
+  PetscFunctionReturn(0);
+}
+
 /* Appends the states of an entry after scene->load_count. */
 static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
 {
@@ -195,11 +236,16 @@ static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
   Target target;
 
   PetscFunctionBeginUser;
+  if (LamNodeFind(entry, "inflate")) {
+    PetscCall(BuildInflated(entry, scene));
+    PetscFunctionReturn(0);
+  }
   PetscCall(ReadTarget(entry, &target));
   PetscCall(LamSceneReadControl(target.F, target.P, scene->scales.stress, &end));
   PetscCall(LamSceneCheckF(target.F));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
-  if (scene->load_count && scene->controls) before = scene->controls[scene->load_count - 1];
+  /* from the inflated tissue F = I is known, and no stress is prescribed */
+  if (scene->load_count > (scene->inflate ? 1 : 0) && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));
   PetscCall(BuildPressures(entry, scene, &load));
   for (PetscInt k = 1; k <= target.states; k++) {
@@ -229,7 +275,7 @@ PetscErrorCode LamSceneBuildLoad(const LamNode *root, LamScene *scene)
     Target target;
 
     PetscCall(ReadTarget(entry, &target));
-    if (target.P) mixed = PETSC_TRUE;
+    if (target.P || !target.F) mixed = PETSC_TRUE;
     total += target.states;
     LamSceneCheck(total <= MAX_STATES, entry, "more than %d states in all; use fewer steps", (int)MAX_STATES);
   }

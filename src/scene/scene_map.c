@@ -223,6 +223,9 @@ PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene)
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
   LamSceneCheckName(scene->load_count, block, "needs a block load, along which the tissue is followed; add one");
+  LamSceneCheckName(!scene->inflate, block,
+                    "follows a load from the tissue at rest, and this one begins with inflate: "
+                    "true; give F and P from rest");
   scene->has_map = PETSC_TRUE;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
     PetscCall(BuildAxis(LamNodeFind(block, axes[a]), scene, &nodes, &scene->map[a]));

@@ -63,11 +63,12 @@ static PetscErrorCode SealOne(const LamScene *scene, const LamLoad *load, LamRVE
 
 PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const LamLoad *first)
 {
-  const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = first->turgor, .cohesion = first->cohesion};
+  LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = first->turgor, .cohesion = first->cohesion};
   LamResponse *response = &meshes->unsealed;
   char reason[sizeof(response->reason)];
 
   PetscFunctionBeginUser;
+  if (scene->inflate) PetscCall(PetscArraycpy(load.F, first->F, 9));
   for (PetscInt m = 0; m < meshes->count && scene->sealed && response->status == LAM_CONVERGED; m++)
     PetscCall(SealOne(scene, &load, meshes->rve[m], meshes->state[m], response));
   if (response->status == LAM_CONVERGED || response->status == LAM_OUT_OF_REACH) PetscFunctionReturn(0);

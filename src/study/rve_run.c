@@ -29,7 +29,7 @@ static LamWanted Wanted(const LamRVERun *run)
 {
   LamWanted wanted = LAM_WANT_STRESS | LAM_WANT_INDICATORS;
 
-  if (run->derivatives) wanted |= LAM_WANT_DERIVATIVES;
+  if (run->derivatives || run->readings) wanted |= LAM_WANT_DERIVATIVES;
   if (run->walls || run->find_failure || !run->no_estimate) wanted |= LAM_WANT_WALLS;
   if (run->out_path) wanted = LAM_WANT_ALL;
   return wanted | LAM_WANT_JUMPS;
@@ -41,6 +41,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
   LamPlan plan;
 
   PetscFunctionBeginUser;
+  if (run->scene->inflate) run->readings = PETSC_TRUE;
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene->path);
   PetscCall(LamPlanMake(run->scene, &plan));
@@ -53,7 +54,8 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
   PetscCall(LamMeshesSetWanted(&run->meshes, Wanted(run)));
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   if (!run->no_estimate && !run->second_mesh) PetscCall(LamRVEEstimateCreate(run->meshes.rve[0], &run->estimate));
-  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
+  LamTestCreate(run->scene, &run->test);
+  if (!run->scene->inflate) PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   if (run->find_failure) {
     const LamFailureProgram program = {.interface = run->scene->micro.interface,
@@ -97,25 +99,44 @@ const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number)
   return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
 }
 
+/* After the first state of a load from the inflated tissue: what follows counts from there. */
+static PetscErrorCode StartFromInflated(LamRVERun *run, const LamResponse *inflated)
+{
+  PetscFunctionBeginUser;
+  if (!LamResponseHasFields(inflated)) {
+    LamReportNote(&run->reporter, "the tissue that is free of stress was not found, and what follows counts from it: "
+                                  "it is not solved");
+    run->scene->load_count = 1;
+    PetscFunctionReturn(0);
+  }
+  LamLoadsFromInflated(run->scene, inflated->load.F);
+  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &inflated->load));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SolveStates(LamRVERun *run)
 {
-
   PetscFunctionBeginUser;
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 
     PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
                              responses));
-    if (run->global)
-      PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
+    if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
     if (run->meshes.stopped) break;
     if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     CountDoubts(run, &responses[0]);
+    if (run->readings)
+      PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
+    if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
     if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
-    if (run->writer) PetscCall(WriteState(run, run->solved, &responses[0]));
+    if (run->writer) {
+      PetscCall(WriteState(run, run->solved, &responses[0]));
+      LamRVECSVAdd(run, &responses[0]);
+    }
     if (run->state) PetscCall(run->state(run->reporter.ctx, run, responses));
     PetscCall(LamReportProgress(&run->reporter, run->solved, run->scene->load_count, run->failed));
   }
@@ -131,8 +152,14 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
   if (run->out_path) {
     PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
     ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
+    if (!ierr) ierr = LamRVECSVOpen(run);
   }
   if (!ierr) ierr = SolveStates(run);
+  if (run->csv.out) {
+    const PetscErrorCode written = LamBesideClose(&run->csv);
+
+    if (!ierr) ierr = written;
+  }
   if (run->writer) { /* also after an error, to release the lock */
     const PetscErrorCode closed = LamRecordWriterClose(&run->writer);
 
@@ -149,6 +176,7 @@ PetscErrorCode LamRVERunDestroy(LamRVERun *run)
   PetscFunctionBeginUser;
   PetscCall(LamOnsetDestroy(&run->onset));
   PetscCall(LamFailureDestroy(&run->failure));
+  PetscCall(LamTestDestroy(&run->test));
   PetscCall(LamRVEEstimateDestroy(&run->estimate));
   PetscCall(LamMeshesDestroy(&run->meshes));
   PetscCall(LamSceneDestroy(&run->scene));

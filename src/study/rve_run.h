@@ -10,7 +10,9 @@
 #ifndef LAM_RVE_RUN_H
 #define LAM_RVE_RUN_H
 
+#include "beside.h"
 #include "failure.h"
+#include "mechanical_test.h"
 #include "study.h"
 #include <lamella/database.h>
 
@@ -21,6 +23,7 @@ typedef struct LamRVERun_s {
   PetscBool find_onset, find_failure; /* of contact tissue on two meshes */
   PetscBool second_mesh;              /* of contact tissue */
   PetscBool global;                   /* contact tissue, one mesh, prescribed F: from other starts, too */
+  PetscBool readings;                 /* of the mechanical test; always with a load from the inflated tissue */
   PetscBool no_estimate, monitor;     /* no estimate of the error; each Newton iteration on stderr */
   LamReporter reporter;
   /* Called after each state, number `solved`; ctx: that of the reporter. */
@@ -31,7 +34,9 @@ typedef struct LamRVERun_s {
   LamRVEEstimate estimate; /* NULL: no estimate */
   LamOnset onset;
   LamFailure failure;
+  LamTest test;           /* curve of the states with a solution, with `readings` */
   LamRecordWriter writer; /* NULL without a file */
+  LamBeside csv;          /* with a file: its table for spreadsheets */
   PetscInt solved, failed;
   PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
   PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
@@ -46,5 +51,10 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run);
 PetscErrorCode LamRVERunDestroy(LamRVERun *run);
 /* The prescribed stress of state `number`; NULL: none. */
 const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number);
+
+/* ---- rve_csv.c ---- */
+PetscErrorCode LamRVECSVOpen(LamRVERun *run);
+/* A line for the state just solved. */
+void LamRVECSVAdd(LamRVERun *run, const LamResponse *response);
 
 #endif

@@ -17,6 +17,7 @@
 #define LAM_TRADEOFF_H
 
 #include "fe2_run.h"
+#include "mechanical_test.h"
 
 #define LAM_KNOBS(X)                                                                                                   \
   X(LAM_KNOB_MESH, "mesh")           /* elements along a face, through a wall, grading */                              \
@@ -114,7 +115,7 @@ typedef struct {
 PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why);
 /* All settings of a parameter; the caller frees. */
 PetscErrorCode LamSettingsMake(const LamScene *scene, LamKnob knob, PetscInt *n, LamSetting **settings);
-PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states);
+PetscErrorCode LamStatesMake(LamScene *scene, LamStates *states);
 PetscInt LamStatesCount(const LamStates *states); /* without those skipped */
 
 /* ---- tradeoff_measure.c ---- */

@@ -227,7 +227,7 @@ static void Default(const LamScene *scene, LamStates *states)
 }
 
 /* Finds the free components of F; states that do not converge are dropped. */
-static PetscErrorCode FindFree(const LamScene *scene, LamStates *states)
+static PetscErrorCode FindFree(LamScene *scene, LamStates *states)
 {
   LamResponse responses[2];
   LamMeshes meshes;
@@ -235,17 +235,21 @@ static PetscErrorCode FindFree(const LamScene *scene, LamStates *states)
   PetscFunctionBeginUser;
   PetscCall(LamMeshesCreate(PETSC_COMM_SELF, scene, 1, &meshes));
   PetscCall(LamMeshesSetInterrupt(&meshes, LamStopInterrupt, NULL));
-  PetscCall(LamMeshesSeal(&meshes, scene, &scene->loads[0]));
+  if (!scene->inflate) PetscCall(LamMeshesSeal(&meshes, scene, &scene->loads[0]));
   for (PetscInt s = 0; s < scene->load_count && !meshes.stopped; s++) {
     PetscCall(LamMeshesSolve(&meshes, &scene->loads[s], &scene->controls[s], responses));
     if (LamResponseHasFields(&responses[0])) states->loads[states->n++] = responses[0].load;
+    if (!scene->inflate || s > 0) continue;
+    if (!states->n) break; /* what follows counts from the inflated tissue */
+    LamLoadsFromInflated(scene, states->loads[0].F);
+    PetscCall(LamMeshesSeal(&meshes, scene, &states->loads[0]));
   }
   PetscCall(LamMeshesDestroy(&meshes));
   states->dropped = scene->load_count - states->n;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamStatesMake(const LamScene *scene, LamStates *states)
+PetscErrorCode LamStatesMake(LamScene *scene, LamStates *states)
 {
   PetscFunctionBeginUser;
   *states = (LamStates){.origin = "load", .chained = PETSC_TRUE};
