@@ -111,6 +111,8 @@ PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive)
   PetscCall(LamArchiveShared(archive, "progress", sizeof(macro->progress), &macro->progress));
   PetscCall(LamArchiveShared(archive, "work", sizeof(macro->step.work), &macro->step.work));
   PetscCall(LamMacroArchiveVec(macro, archive, "origin", macro->origin));
+  PetscCall(LamMacroArchiveVec(macro, archive, "moved", macro->moved));
+  PetscCall(LamArchiveShared(archive, "knows moved", sizeof(macro->knows_moved), &macro->knows_moved));
   if (LamArchiveIsReading(archive)) { /* conditions are measured from the stored displacement */
     PetscCall(VecCopy(macro->origin, macro->u));
     PetscCall(LamMacroHoldBoundaries(macro));

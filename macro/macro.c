@@ -25,12 +25,13 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-enum { VECTORS = 8 };
+enum { VECTORS = 9 };
 
 static void ListVectors(LamMacro macro, Vec *vectors[VECTORS])
 {
   Vec *const list[VECTORS] = {&macro->u,     &macro->trial,          &macro->residual, &macro->origin,
-                              &macro->force, &macro->force_accepted, &macro->external, &macro->before};
+                              &macro->force, &macro->force_accepted, &macro->external, &macro->before,
+                              &macro->moved};
 
   memcpy(vectors, list, sizeof(list));
 }

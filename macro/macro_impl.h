@@ -173,6 +173,7 @@ struct LamMacro_s {
   MPI_Comm comm;
   const LamScene *scene;  /* borrowed */
   LamResponder responder; /* borrowed */
+  LamResponder reference; /* borrowed; NULL: reactions are not corrected */
   LamMacroMonitor monitor;
   void *monitor_ctx;       /* borrowed */
   LamMacroCutback cutback; /* NULL: no callback */
@@ -219,6 +220,8 @@ struct LamMacro_s {
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
   Vec origin;                /* displacement from which prescribed displacements are measured */
+  Vec moved;                 /* correction of the inflated body by the reference responder, ... */
+  PetscBool knows_moved;     /* ... once it is known */
   Vec force, force_accepted; /* internal nodal forces at the last evaluation and at the last converged state */
   Mat tangent;
   SNES snes;
@@ -378,6 +381,10 @@ PetscErrorCode LamMacroAddWork(LamMacro macro);
 void LamMacroDisplacements(LamMacro macro, LamMacroStep *step);
 /* Forces on the body at the named sides, in the last converged state at the present parameter. */
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
+
+/* certify.c */
+/* Corrects the reactions of the last converged state by the reference responder, if there is one. */
+PetscErrorCode LamMacroCertify(LamMacro macro, LamMacroStep *step);
 
 /* assembly.c */
 /* dN/dX [nodes][dim] at Gauss point q of an element. */

@@ -357,6 +357,7 @@ PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal loa
   PetscCall(MeanIndicators(macro, step));
   PetscCall(LamMacroFindLocalisation(macro, step));
   PetscCall(SumCounters(macro, step));
+  PetscCall(LamMacroCertify(macro, step));
   step->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

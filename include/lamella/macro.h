@@ -29,6 +29,8 @@ typedef struct {
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, stress * macro length, per thickness; a corner's
                                                     force is shared by the sides that prescribe it */
+  PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by LamMacroSetReference; NaN: unknown, ... */
+  char uncertified[200];                         /* ... and why; empty without a reference */
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
   PetscReal work;                                /* of the boundary forces since the start, stress * length^2 */
   PetscReal debonded_fraction, max_gap;          /* not finite if unknown to the responder */
@@ -74,6 +76,12 @@ LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, con
 /* Sets turgor at full inflation and cohesion per point, [point] each. Default: the scene's values. */
 LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
 LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder); /* borrows it */
+/*
+  Reactions of each step are corrected by a second responder: it is queried at the converged F of all points, and one
+  Newton step of the body follows (LamMacroStep.certified). NULL: none (default). Borrows it. PETSC_ERR_USER_INPUT for
+  load control, free grips and sealed cells. Call after LamMacroSetUp.
+*/
+LAM_EXPORT PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference);
 LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*

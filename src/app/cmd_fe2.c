@@ -49,6 +49,9 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        "direct: solve an RVE per material point (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
        &response},
+      {0, "certify", LAM_OPTION_FLAG, NULL,
+       "correct the reactions of each step by direct solves of its material points, and one solve of the body",
+       &run.certify},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on behind the last complete step of OUT.h5, where there is one",
        &run.resume},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per load step on stdout", &console.json},
@@ -57,11 +60,16 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--resume] [--json] [--quiet]",
-                            "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
-                            exit_status));
+  PetscCall(LamOptionsParse(
+      args, "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify] [--resume] [--json] [--quiet]",
+      "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!LamFE2ChooseResponse("fe2", response, &run, exit_status) || !LamFE2CheckPaths("fe2", &run, exit_status))
+    PetscFunctionReturn(0);
+  if (run.certify && run.response == LAM_FE2_DIRECT &&
+      !LamUsageError("fe2", exit_status,
+                     "--certify corrects interpolated responses, and here all are solved; leave it "
+                     "out, or give -d DB.h5"))
     PetscFunctionReturn(0);
   PetscCall(args->start(args));
   run.comm = PETSC_COMM_WORLD;

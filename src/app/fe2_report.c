@@ -19,15 +19,21 @@ static PetscReal MPa(const LamFE2Run *run)
   return run->scene->scales.stress * 1e-6;
 }
 
+static json_t *SidesToJSON(const LamFE2Run *run, const LamMacroStep *step, const PetscReal force[][2])
+{
+  json_t *sides = json_object();
+
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    json_object_set_new(sides, step->boundary[s], LamJSONReals(2, force[s], ForceUnit(run)));
+  return sides;
+}
+
 json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
   const PetscReal mm = scales->macro_length * 1e3;
-  json_t *reaction = json_object();
-
-  for (PetscInt s = 0; s < step->boundary_count; s++)
-    json_object_set_new(reaction, step->boundary[s], LamJSONReals(2, step->reaction[s], ForceUnit(run)));
-  return json_pack(
+  json_t *reaction = SidesToJSON(run, step, step->reaction);
+  json_t *object = json_pack(
       "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, "
       "s:I, s:o, s:o}",
       "step", (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
@@ -45,6 +51,9 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
       /* sources of the responses, and the time outside of solves */
       "interpolated", (json_int_t)step->interpolated, "query_seconds", LamJSONReal(step->query_seconds),
       "other_seconds", LamJSONReal(PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds)));
+
+  if (run->certify) json_object_set_new(object, "certified", SidesToJSON(run, step, step->certified));
+  return object;
 }
 
 /* If there are several. */
@@ -83,6 +92,19 @@ static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
   printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }
 
+/* Reactions corrected by direct solves, below the row. */
+static void PrintCertified(const LamFE2Run *run, const LamMacroStep *step)
+{
+  printf("%12s", "certified");
+  if (step->uncertified[0]) {
+    printf("  no: %s\n", step->uncertified);
+    return;
+  }
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(step->certified[s][i] * ForceUnit(run)));
+  putchar('\n');
+}
+
 static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
 {
   printf("%4" PetscInt_FMT " %7.4f", step->step, (double)step->load_factor);
@@ -91,6 +113,7 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
          (long long)step->hits, (long long)step->solves, (double)step->seconds, (double)step->solve_seconds);
   for (PetscInt k = 0; k < step->residual_count; k++) printf(" %.0e", (double)step->residuals[k]);
   putchar('\n');
+  if (run->certify) PrintCertified(run, step);
   fflush(stdout);
 }
 

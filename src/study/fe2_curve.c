@@ -48,6 +48,8 @@ PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamM
     for (int i = 0; i < 2; i++) {
       row.displacement[s][i] = step->displacement[s][i] * scales->macro_length * 1e3;
       row.reaction[s][i] = step->reaction[s][i] * scales->stress * scales->macro_length * 1e-3;
+      row.certified[s][i] = step->certified[s][i] * scales->stress * scales->macro_length * 1e-3;
+      if (isfinite(row.certified[s][i])) curve->has_certified = PETSC_TRUE;
     }
   }
   PetscCall(LamListGrow(curve->count, sizeof(row), &curve->capacity, &curve->rows));
@@ -83,6 +85,8 @@ PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)
   PetscCall(
       LamWriteRows(writer, "/macro/curve/displacement", 3, dims, first->displacement[0], sizeof(*first), 1, "mm"));
   PetscCall(LamWriteRows(writer, "/macro/curve/reaction", 3, dims, first->reaction[0], sizeof(*first), 1, "N/mm"));
+  if (curve->has_certified)
+    PetscCall(LamWriteRows(writer, "/macro/curve/certified", 3, dims, first->certified[0], sizeof(*first), 1, "N/mm"));
   PetscFunctionReturn(0);
 }
 
@@ -94,6 +98,8 @@ static void PrintHeader(FILE *out, const LamCurve *curve)
       for (PetscInt s = 0; s < curve->side_count; s++)
         fprintf(out, ",%s u1 (mm),%s u2 (mm),%s R1 (N/mm),%s R2 (N/mm)", curve->side[s], curve->side[s], curve->side[s],
                 curve->side[s]);
+      for (PetscInt s = 0; s < curve->side_count && curve->has_certified; s++)
+        fprintf(out, ",%s R1 certified (N/mm),%s R2 certified (N/mm)", curve->side[s], curve->side[s]);
     }
     if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     fprintf(out, "%s%s", c ? "," : "", Names[c]);
@@ -116,6 +122,8 @@ static void PrintRow(FILE *out, const LamCurve *curve, const LamCurveRow *row)
       for (int i = 0; i < 2; i++) PrintNumber(out, row->displacement[s][i]);
       for (int i = 0; i < 2; i++) PrintNumber(out, row->reaction[s][i]);
     }
+    for (PetscInt s = 0; s < curve->side_count && c == LAM_CURVE_WORK && curve->has_certified; s++)
+      for (int i = 0; i < 2; i++) PrintNumber(out, row->certified[s][i]);
     if (LamCurveHas(curve, (LamCurveColumn)c)) PrintNumber(out, row->value[c]);
   }
   fputc('\n', out);

@@ -43,10 +43,12 @@ typedef struct {
   PetscReal value[LAM_CURVE_COLUMN_COUNT];
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* mm */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, N per mm of thickness */
+  PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by direct solves */
 } LamCurveRow;
 
 typedef struct {
   PetscInt side_count;
+  PetscBool has_certified; /* of any row */
   char side[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH];
   PetscInt count, capacity;
   LamCurveRow *rows; /* owned */
@@ -57,8 +59,8 @@ PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamM
 PetscErrorCode LamCurveDestroy(LamCurve *curve);
 /* Whether the curve has this column. */
 PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
-/* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement and reaction
-   [step][side][2]. */
+/* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement, reaction and, where
+   they are, certified [step][side][2]. */
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer);
 /* Writes the .csv file beside the HDF5 file: a header line of names with units, then a line per step; NaN is empty. */
 PetscErrorCode LamCurveWriteCSV(const LamCurve *curve, const char hdf5[]);

@@ -160,8 +160,7 @@ PetscErrorCode LamFE2ChangeTissueWalls(void *ctx, const PetscReal factor[LAM_WAL
   PetscFunctionReturn(0);
 }
 
-/* *kept: number of points for which two states fit in this tissue's share of warm_start_memory. With a cache no point
-   keeps a state, because all solves start from the reference. */
+/* *kept: number of points for which two states fit in this tissue's share of warm_start_memory. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)
 {
   const PetscReal memory = run->scene->response.warm_start_memory;
@@ -170,8 +169,6 @@ static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue
   size_t bytes;
 
   PetscFunctionBeginUser;
-  *kept = run->response == LAM_FE2_DIRECT ? tissue->points : 0;
-  if (!*kept) PetscFunctionReturn(0);
   for (PetscInt t = 0; t < run->tissues.count; t++) share += (PetscReal)run->tissues.tissues[t].points;
   PetscCall(LamRVEStateCreate(tissue->rve, &state));
   PetscCall(LamRVEStateSize(state, &bytes));
@@ -181,15 +178,25 @@ static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
+PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder)
 {
-  PetscInt kept;
+  PetscInt kept = 0;
 
+  PetscFunctionBeginUser;
+  PetscCall(CountKept(run, tissue, &kept));
+  PetscCall(LamRVEResponderCreate(tissue->rve, kept, responder));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
+{
   PetscFunctionBeginUser;
   PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, &tissue->scene, &tissue->rve));
   PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
-  PetscCall(CountKept(run, tissue, &kept));
-  PetscCall(LamRVEResponderCreate(tissue->rve, kept, &tissue->direct));
+  if (run->response == LAM_FE2_DIRECT)
+    PetscCall(LamFE2CreateDirect(run, tissue, &tissue->direct));
+  else /* all solves start from the reference, so that they do not depend on the order of the queries */
+    PetscCall(LamRVEResponderCreate(tissue->rve, 0, &tissue->direct));
   PetscFunctionReturn(0);
 }
 
@@ -212,7 +219,7 @@ static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder)
 {
   PetscFunctionBeginUser;
-  if (run->response != LAM_FE2_DATABASE) PetscCall(CreateSolver(run, tissue));
+  if (run->response != LAM_FE2_DATABASE) PetscCall(LamFE2CreateSolver(run, tissue));
   *responder = tissue->direct;
   if (run->response == LAM_FE2_DIRECT) PetscFunctionReturn(0);
   if (run->response == LAM_FE2_CACHE) {
@@ -257,6 +264,7 @@ PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
   PetscCall(LamResponderDestroy(&tissue->cache));
   PetscCall(LamNodeChainDestroy(&tissue->chain));
   PetscCall(LamResponderDestroy(&tissue->direct));
+  PetscCall(LamResponderDestroy(&tissue->reference));
   PetscCall(LamRVEDestroy(&tissue->rve));
   PetscCall(LamDatabaseClose(&tissue->database));
   PetscCall(LamKnownRecordsDestroy(&tissue->known));
@@ -269,6 +277,7 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run)
 {
   PetscFunctionBeginUser;
   PetscCall(LamResponderDestroy(&run->heterogeneous));
+  PetscCall(LamResponderDestroy(&run->reference));
   for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2DisconnectTissue(&run->tissues.tissues[t]));
   PetscCall(LamFE2TissuesDestroy(&run->tissues));
   PetscFunctionReturn(0);

@@ -3,6 +3,7 @@
 
     fe2_run.c         lifecycle
     fe2_response.c    responders of the material points
+    fe2_certify.c     reactions corrected by direct solves
     fe2_tissue.c      tissue of each point
     fe2_record.c      files of rank 0
     fe2_checkpoint.c  checkpoints of an interrupted run
@@ -35,6 +36,7 @@ typedef struct LamFE2Run_s {
   const char *database_path; /* NULL: none */
   const char *out_path;      /* results; NULL: none */
   PetscBool resume;          /* resume after the last complete step of out_path, if there is one */
+  PetscBool certify;         /* correct the reactions of interpolated responses by direct solves */
   LamFE2Response response;
   LamReporter reporter;
   /* Called after each step, on rank 0: the files have the step, `totals` do not yet include it. May be NULL. */
@@ -51,6 +53,7 @@ typedef struct LamFE2Run_s {
   LamArchive archive;                              /* the checkpoint to resume from, until it is read; NULL: none */
   LamFE2Tissues tissues;
   LamResponder heterogeneous; /* responder for several tissues; NULL: not in use */
+  LamResponder reference;     /* direct one for several tissues, with `certify`; NULL: not in use */
 
   /* rank 0 only */
   LamFE2File out;
@@ -96,6 +99,15 @@ PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
                                  const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
 /* The same for a LamFE2Tissue; callback for LamProcessSetWalls. */
 PetscErrorCode LamFE2ChangeTissueWalls(void *tissue, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
+
+/* Creates the RVE and the direct responder of a tissue; a responder that solves each point from its last state, as far
+   as the memory of the scene goes. */
+PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue);
+PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder);
+
+/* ---- fe2_certify.c ---- */
+/* Corrects the reactions by direct solves; after LamFE2Connect. PETSC_ERR_SUP: not of such a body. */
+PetscErrorCode LamFE2Certify(LamFE2Run *run);
 
 /* ---- fe2_record.c; on rank 0, except LamFE2OpenFiles, which is collective ---- */
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);

@@ -23,6 +23,7 @@ typedef struct {
   LamNodeChain chain;          /* solves the cache's nodes */
   LamNodeSolver solved, nodes; /* by the chain; by `known`, else by the chain */
   LamResponder direct, cache;  /* NULL: not in use */
+  LamResponder reference;      /* of certified reactions; NULL: not in use */
 
   /* rank 0 only */
   LamRecordWriter records; /* appends the cache's records to the database file */
