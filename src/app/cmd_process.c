@@ -300,7 +300,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
        &run.database_path},
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
-       "states in time, for plot and info; of a body with OUT.xdmf and OUT.csv beside it", &run.out_path},
+       "states in time, for plot and info, with OUT.csv beside it; of a body also OUT.xdmf", &run.out_path},
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",

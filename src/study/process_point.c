@@ -151,6 +151,7 @@ static PetscErrorCode Follow(LamProcessStudy *study)
                                                   : study->message;
   if (!ierr && study->reason != LAM_PROCESS_STOPPED) ierr = WriteFrames(study);
   if (!ierr && study->writer) ierr = Commit(study, status);
+  if (!ierr && study->out_path) ierr = LamProcessHistoryWriteCSV(study->out_path, study->scene, &study->history);
   closed = LamRecordWriterClose(&study->writer);
   PetscCall(ierr ? ierr : closed);
   PetscFunctionReturn(0);

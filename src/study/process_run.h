@@ -25,6 +25,8 @@ typedef struct {
 
 /* ---- process_states.c ---- */
 PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *scene, const LamProcessHistory *history);
+/* The same as a table for spreadsheets, beside the HDF5 file: .csv; F from the inflated tissue, and P. */
+PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *history);
 PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history); /* a LamBodyHistory */
 #define LAM_PROCESS_PARTS 1000                                             /* of the duration, for progress reports */
 PetscInt64 LamProcessProgress(const LamScene *scene, PetscReal time);      /* parts done */

@@ -3,8 +3,11 @@
   (docs/reference/files.md).
 */
 #include "process_run.h"
+#include "beside.h"
 #include "names.h"
+#include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 PetscInt64 LamProcessProgress(const LamScene *scene, PetscReal time)
 {
@@ -80,11 +83,11 @@ static PetscErrorCode WriteEvents(const States *s, size_t offset)
     name, unit, offsetof(Type, member), factor                                                                         \
   }
 
-PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *scene, const LamProcessHistory *h)
+#define POINT_COLUMNS 9
+static void PointColumns(const LamScene *scene, Column columns[POINT_COLUMNS])
 {
   const PetscReal MPa = scene->scales.stress * 1e-6;
-  const States s = {writer, scene, h->count, h->states, sizeof(LamProcessState)};
-  const Column columns[] = {
+  const Column all[POINT_COLUMNS] = {
       COLUMN(LamProcessState, "time", time, 1, "s"),
       COLUMN(LamProcessState, "temperature", temperature, 1, "K"),
       COLUMN(LamProcessState, "turgor", turgor, MPa, "MPa"),
@@ -96,10 +99,56 @@ PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *sc
       COLUMN(LamProcessState, "walls", walls, 1, "1"),
   };
 
+  for (int c = 0; c < POINT_COLUMNS; c++) columns[c] = all[c];
+}
+
+PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *scene, const LamProcessHistory *h)
+{
+  const States s = {writer, scene, h->count, h->states, sizeof(LamProcessState)};
+  Column columns[POINT_COLUMNS];
+
   PetscFunctionBeginUser;
-  PetscCall(WriteColumns(&s, PETSC_STATIC_ARRAY_LENGTH(columns), columns, offsetof(LamProcessState, ratio),
-                         offsetof(LamProcessState, factor)));
+  PointColumns(scene, columns);
+  PetscCall(
+      WriteColumns(&s, POINT_COLUMNS, columns, offsetof(LamProcessState, ratio), offsetof(LamProcessState, factor)));
   PetscCall(WriteEvents(&s, offsetof(LamProcessState, event)));
+  PetscFunctionReturn(0);
+}
+
+static void PrintNumber(FILE *out, PetscReal value)
+{
+  fputc(',', out);
+  if (isfinite(value)) fprintf(out, "%.12g", (double)value);
+}
+
+PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *h)
+{
+  static const int plane[] = {0, 1, 3, 4, 8};
+  const PetscReal MPa = scene->scales.stress * 1e-6;
+  Column columns[POINT_COLUMNS];
+  LamBeside file;
+
+  PetscFunctionBeginUser;
+  PointColumns(scene, columns);
+  PetscCall(LamBesideOpen(hdf5, ".csv", &file));
+  fputs("state,event", file.out);
+  for (int c = 0; c < POINT_COLUMNS; c++)
+    fprintf(file.out, strcmp(columns[c].unit, "1") ? ",%s (%s)" : ",%s", columns[c].name, columns[c].unit);
+  for (int k = 0; k < 5; k++) fprintf(file.out, ",F%d%d", plane[k] / 3 + 1, plane[k] % 3 + 1);
+  for (int k = 0; k < 5; k++) fprintf(file.out, ",P%d%d (MPa)", plane[k] / 3 + 1, plane[k] % 3 + 1);
+  fputc('\n', file.out);
+  for (PetscInt n = 0; n < h->count; n++) {
+    const LamProcessState *state = &h->states[n];
+
+    fprintf(file.out, "%d,%s", (int)n, state->event == LAM_EVENT_COUNT ? "" : LamEventNames[state->event]);
+    for (int c = 0; c < POINT_COLUMNS; c++)
+      PrintNumber(file.out,
+                  columns[c].factor * *(const PetscReal *)(const void *)((const char *)state + columns[c].offset));
+    for (int k = 0; k < 5; k++) PrintNumber(file.out, state->F[plane[k]]);
+    for (int k = 0; k < 5; k++) PrintNumber(file.out, state->response.P[plane[k]] * MPa);
+    fputc('\n', file.out);
+  }
+  PetscCall(LamBesideClose(&file));
   PetscFunctionReturn(0);
 }
 

@@ -23,6 +23,8 @@ grep -qE '^ +6\.7[0-9]+ .* lamella_normal$' out.txt || fail "the row of the even
 # the file, and its pictures
 expect 0 -o '"kind": "process"' "$lamella" info a.h5 --json
 expect 0 "$lamella" info a.h5 --check
+head -1 a.csv | grep -q '^state,event,time (s),.*,F11,F12,F21,F22,F33,P11 (MPa),' || fail "the table: $(head -1 a.csv)"
+grep -q '^[0-9]*,lamella_normal,[0-9]' a.csv || fail "the table has no event: $(cut -c1-60 a.csv)"
 expect 0 "$lamella" plot a.h5 -o a.svg
 grep -q svg a.svg || fail "no picture"
 expect 0 "$lamella" plot a.h5 --state 0 -o s.svg
