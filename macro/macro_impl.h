@@ -250,6 +250,8 @@ struct LamMacro_s {
   PetscBool lenient;   /* responses with small jumps: a small residual may remain */
   PetscBool thorough;  /* at least one iteration, even if the first residual is small */
   PetscBool fresh;     /* no residual evaluated yet in this series of iterations */
+  PetscInt pulled, released; /* nodes: in contact though pulled, most of all; to leave at the next residual; -1 */
+  PetscBool any_pulled;      /* on any rank */
   PetscReal violation; /* largest penetration or distance of nodes violating the contact conditions, last residual */
   PetscInt row_count;
   LamNodeRows *rows; /* of the last residual */

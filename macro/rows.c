@@ -15,6 +15,10 @@
   the first retreat of an obstacle. Derivatives: dg = n . dx; with dn = kappa t (t . dx), kappa = 1 / |x - centre|,
   and t normal to n, d(t . r) = t . dr - kappa lambda t . dx.
 
+  In a sealed body, which hardly changes its volume, this set may alternate for ever: a node that leaves moves its
+  neighbours. There nodes enter at once, but stay, also where the obstacle would have to pull them, until the iteration
+  has converged. Then the node that is pulled most leaves, and so on until none is pulled.
+
   Reference: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888.
 */
 #include "macro_impl.h"
@@ -67,33 +71,30 @@ static LamNodeRows HeldRows(LamMacro macro, const LamConstraint constraints[], P
   return rows;
 }
 
-/* Rows of a node without prescribed direction; *active on entry: in contact before, on return: in contact. */
-static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, const PetscScalar r[], PetscBool *active)
+/* lambda of a node. One with a prescribed direction m moves along s, the tangent of m: lambda n . s = s . r; an
+   obstacle whose normal is within ASIDE of m cannot constrain it, which is infinitely little force. */
+#define ASIDE 0.1
+static PetscReal TouchForce(const LamTouch *touch, const PetscReal m[2], const PetscScalar r[2])
 {
-  const PetscReal lambda = touch->normal[0] * PetscRealPart(r[local]) + touch->normal[1] * PetscRealPart(r[local + 1]);
+  const PetscReal *n = touch->normal;
+
+  if (!m) return n[0] * PetscRealPart(r[0]) + n[1] * PetscRealPart(r[1]);
+
+  const PetscReal s[2] = {-m[1], m[0]}, along = n[0] * s[0] + n[1] * s[1];
+
+  return PetscAbsReal(along) < ASIDE ? -PETSC_INFINITY
+                                     : (s[0] * PetscRealPart(r[0]) + s[1] * PetscRealPart(r[1])) / along;
+}
+
+/* Rows of a node in contact without prescribed direction, under the force lambda. */
+static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, PetscReal lambda)
+{
   const PetscInt i = Largest(touch->normal);
   LamNodeRows rows = {.local = local};
 
-  *active = *active || lambda > touch->gap ? PETSC_TRUE : PETSC_FALSE;
-  if (!*active) return rows;
   PrescribeRow(&rows, i, touch->normal, touch->gap);
   TangentRow(&rows, 1 - i, touch->normal, touch->curvature * lambda);
   return rows;
-}
-
-/* Rows of a node with one prescribed direction m. It moves along s, the tangent of m: lambda n . s = s . r. */
-static void TouchHeldRows(const LamTouch *touch, const PetscReal m[2], const PetscScalar r[], LamNodeRows *rows,
-                          PetscBool *active)
-{
-  const PetscReal aside = 0.1; /* an obstacle whose normal is closer to m cannot constrain the node */
-  const PetscInt i = 1 - Largest(m);
-  const PetscReal s[2] = {-m[1], m[0]}, along = touch->normal[0] * s[0] + touch->normal[1] * s[1];
-
-  if (PetscAbsReal(along) < aside) *active = PETSC_FALSE;
-  if (PetscAbsReal(along) < aside) return;
-  const PetscReal force = s[0] * PetscRealPart(r[rows->local]) + s[1] * PetscRealPart(r[rows->local + 1]);
-  *active = *active || force / along > touch->gap ? PETSC_TRUE : PETSC_FALSE;
-  if (*active) PrescribeRow(rows, i, touch->normal, touch->gap);
 }
 
 /* Rows of the prescribed directions, one for each node, in the order of macro->constraints. */
@@ -110,27 +111,57 @@ static void FillHeldRows(LamMacro macro, const PetscScalar u[])
   }
 }
 
+/* Whether a node is in contact, with lambda - g; in a sealed body it leaves only where it is told to (see above). */
+static PetscBool IsInContact(LamMacro macro, PetscInt k, PetscReal excess, PetscReal *most_pulled)
+{
+  const LamObstacleNode *node = &macro->obstacle_nodes[k];
+  const PetscBool was = macro->fresh ? node->accepted : node->active;
+
+  if (excess > 0 || (macro->fresh && was && excess > -PETSC_INFINITY && !macro->seal)) return PETSC_TRUE;
+  if (!was || !macro->seal || k == macro->released || excess == -PETSC_INFINITY) return PETSC_FALSE;
+  if (excess < *most_pulled) macro->pulled = k;
+  *most_pulled = PetscMin(*most_pulled, excess);
+  return PETSC_TRUE;
+}
+
+/* Of the nodes in contact the one that is pulled most, among all ranks; macro->pulled: -1 on the other ranks. */
+static PetscErrorCode FindPulled(LamMacro macro, PetscReal most_pulled)
+{
+  PetscMPIInt rank = 0;
+  PetscBool mine = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMacroFindRank(macro, most_pulled, &rank, &mine));
+  if (!mine) macro->pulled = -1;
+  macro->any_pulled = (PetscBool)(macro->pulled >= 0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->any_pulled, 1, MPIU_BOOL, MPI_LOR, macro->comm));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], const PetscScalar r[])
 {
+  PetscReal most_pulled = 0;
+
   PetscFunctionBeginUser;
   macro->violation = 0;
+  macro->pulled = -1;
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     LamObstacleNode *node = &macro->obstacle_nodes[k];
+    const LamConstraint *held = node->constraint < 0 ? NULL : &macro->constraints[node->constraint];
     const LamTouch touch = LamMacroNearest(macro, node, u);
-    PetscBool active = macro->fresh ? node->accepted : PETSC_FALSE;
-    if (node->constraint < 0) {
-      const LamNodeRows rows = TouchRows(&touch, node->local, r, &active);
-      if (active) macro->rows[macro->row_count++] = rows;
-    } else {
-      const LamConstraint *held = &macro->constraints[node->constraint];
-      TouchHeldRows(&touch, held->normal, r, &macro->rows[held->row], &active);
-    }
+    const PetscReal lambda = TouchForce(&touch, held ? held->normal : NULL, &r[node->local]);
+    const PetscBool active = IsInContact(macro, k, lambda - touch.gap, &most_pulled);
+
+    if (active && !held) macro->rows[macro->row_count++] = TouchRows(&touch, node->local, lambda);
+    if (active && held) PrescribeRow(&macro->rows[held->row], 1 - Largest(held->normal), touch.normal, touch.gap);
     node->active = active;
     macro->violation = PetscMax(macro->violation, active ? PetscAbsReal(touch.gap) : -touch.gap);
   }
   macro->fresh = PETSC_FALSE;
-  if (macro->obstacle_count)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->violation, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  macro->released = -1;
+  if (!macro->obstacle_count) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->violation, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  PetscCall(FindPulled(macro, most_pulled));
   PetscFunctionReturn(0);
 }
 

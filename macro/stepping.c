@@ -29,7 +29,7 @@ static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for th
    pressures. It allows for the jumps of interpolated responses at boundaries between cells of a table and between
    neighbouring records. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
-enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, PATIENCE = 6 };
+enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, MOST_RELEASES = 25, PATIENCE = 6 };
 
 /* State of the load program: fractions of the turgor and of the prescribed displacements. */
 typedef struct {
@@ -93,6 +93,11 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   else if (fnorm <= tolerance * scale)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   if (*reason <= 0) PetscFunctionReturn(0);
+  if (macro->obstacle_count && macro->any_pulled) {
+    macro->released = macro->pulled;
+    *reason = SNES_CONVERGED_ITERATING;
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamMacroSealedResidual(macro, &sealed));
   if (sealed > tolerance) *reason = SNES_CONVERGED_ITERATING;
   PetscFunctionReturn(0);
@@ -133,7 +138,6 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
   PetscCall(SNESSetFunction(macro->snes, macro->residual, FormResidual, macro));
   PetscCall(SNESSetJacobian(macro->snes, macro->tangent, macro->tangent, FormTangent, macro));
   PetscCall(SNESSetConvergenceTest(macro->snes, TestConvergence, macro, NULL));
-  PetscCall(SNESSetTolerances(macro->snes, 0, 0, 0, MAX_ITERATIONS, PETSC_MAX_INT));
   PetscCall(SNESSetConvergenceHistory(macro->snes, macro->history, NULL, PETSC_STATIC_ARRAY_LENGTH(macro->history),
                                       PETSC_TRUE));
   PetscCall(SNESGetLineSearch(macro->snes, &search));
@@ -208,6 +212,8 @@ static PetscErrorCode SetLeniency(LamMacro macro)
 
 PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
 {
+  /* nodes leave the obstacles of a sealed body one by one (rows.c) */
+  const PetscInt most = MAX_ITERATIONS + (macro->seal && macro->obstacle_count ? MOST_RELEASES : 0);
   SNESConvergedReason reason;
   PetscInt iterations;
 
@@ -216,6 +222,7 @@ PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
   macro->fresh = PETSC_TRUE;
   PetscCall(SetLeniency(macro));
   macro->trouble[0] = '\0';
+  PetscCall(SNESSetTolerances(macro->snes, 0, 0, 0, most, PETSC_MAX_INT));
   PetscCall(SNESSolve(macro->snes, NULL, macro->trial));
   PetscCall(SNESGetConvergedReason(macro->snes, &reason));
   PetscCall(SNESGetIterationNumber(macro->snes, &iterations));
