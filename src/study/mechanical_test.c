@@ -73,22 +73,22 @@ static PetscErrorCode Slopes(const LamTest *test, const LamResponse *r, const La
                              PetscReal *modulus, PetscReal *lateral)
 {
   PetscBLASInt n = 0, one = 1, size = PLANE, info = 0, pivots[PLANE];
-  int free[PLANE];
+  int loose[PLANE];
   PetscReal A[PLANE * PLANE], x[PLANE];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < PLANE && control; k++)
-    if (control->given[plane[k]] && plane[k] != test->component) free[n++] = plane[k];
+    if (control->given[plane[k]] && plane[k] != test->component) loose[n++] = plane[k];
   for (int k = 0; k < n; k++) {
-    x[k] = -r->tangent[9 * free[k] + test->component];
-    for (int l = 0; l < n; l++) A[k + PLANE * l] = r->tangent[9 * free[k] + free[l]];
+    x[k] = -r->tangent[9 * loose[k] + test->component];
+    for (int l = 0; l < n; l++) A[k + PLANE * l] = r->tangent[9 * loose[k] + loose[l]];
   }
   if (n) LAPACKgesv_(&n, &one, A, &size, pivots, x, &size, &info);
   *modulus = info ? NAN : r->tangent[10 * test->component];
   *lateral = NAN;
   for (int k = 0; k < n && !info; k++) {
-    *modulus += r->tangent[9 * test->component + free[k]] * x[k];
-    if (free[k] == test->lateral) *lateral = x[k];
+    *modulus += r->tangent[9 * test->component + loose[k]] * x[k];
+    if (loose[k] == test->lateral) *lateral = x[k];
   }
   PetscFunctionReturn(0);
 }
