@@ -64,11 +64,29 @@ static int VaryingComponent(PetscInt n, const LamResponse records[])
   return component;
 }
 
+/* The component of F that does nearly all of the work, such as the one that is pulled with free sides; -2: none. */
+static int WorkingComponent(PetscInt n, const LamResponse records[])
+{
+  PetscReal work[9] = {0}, total = 0;
+  int most = 0;
+
+  for (int i = 0; i < 9; i++) {
+    for (PetscInt k = 1; k < n; k++) {
+      const PetscReal w = (records[k].P[i] + records[k - 1].P[i]) * (records[k].load.F[i] - records[k - 1].load.F[i]);
+
+      if (isfinite(w)) work[i] += fabs(w);
+    }
+    total += work[i];
+    if (work[i] > work[most]) most = i;
+  }
+  return work[most] > 0.99 * total && total > 0 ? most : -2;
+}
+
 PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                  const LamScales *scales, LamLoadAxis *axis, PetscReal values[])
 {
-  const int component = VaryingComponent(n, records);
-  PetscBool turgor = PETSC_FALSE, cohesion = PETSC_FALSE, found = PETSC_FALSE;
+  int component = VaryingComponent(n, records);
+  PetscBool turgor = PETSC_FALSE, cohesion = PETSC_FALSE, found = PETSC_FALSE, works = PETSC_FALSE;
   PetscReal H[9];
 
   PetscFunctionBeginUser;
@@ -77,6 +95,10 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
     cohesion = (PetscBool)(cohesion || Differs(records[k].load.cohesion, records[0].load.cohesion));
   }
   *axis = (LamLoadAxis){"", NULL, PETSC_FALSE};
+  if (component == -2 && !turgor && !cohesion && !Proportional(n, records)) {
+    component = WorkingComponent(n, records);
+    works = (PetscBool)(component >= 0);
+  }
   if (component >= 0 && !turgor && !cohesion) {
     found = PETSC_TRUE;
     snprintf(axis->label, sizeof axis->label, "$F$_{%d%d}", component / 3 + 1, component % 3 + 1);
@@ -95,7 +117,7 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
     for (PetscInt k = 0; k < n; k++)
       values[k] = (turgor ? records[k].load.turgor : records[k].load.cohesion) * scales->stress * 1e-6;
   }
-  if (!found || !Monotonic(n, values)) {
+  if (!found || (!works && !Monotonic(n, values))) {
     *axis = (LamLoadAxis){"state", NULL, PETSC_TRUE};
     for (PetscInt k = 0; k < n; k++) values[k] = (PetscReal)keys[k];
   }
