@@ -16,6 +16,9 @@ extern const char *const LamDimensionExamples[]; /* an example of each dimension
   and infinities are not numbers here; a number too large for a double is read as infinite.
 */
 PetscReal LamNumberScan(const char text[], const char **end);
+/* True if a number ends where a decimal comma stands: `end` of "11,25 um". */
+PetscBool LamTextHasDecimalComma(const char end[]);
+#define LAM_DECIMAL_COMMA "has a decimal comma, and the decimal sign is the point"
 PetscBool LamTextIsNonFinite(const char text[]); /* "nan", ".inf", "-Infinity", ... */
 
 /*

@@ -157,6 +157,11 @@ PetscReal LamNumberScan(const char text[], const char **end)
   return strtod(text, NULL);
 }
 
+PetscBool LamTextHasDecimalComma(const char end[])
+{
+  return (PetscBool)(end[0] == ',' && isdigit((unsigned char)end[1]));
+}
+
 /* Decomposes the unit; *known: whether udunits2 recognises it. */
 static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *known)
 {
@@ -237,6 +242,8 @@ PetscErrorCode LamQuantityRead(const char text[], LamDimension dimension, PetscR
     snprintf(reason, LAM_REASON_LENGTH, "is not a finite number");
   } else if (end == start) {
     snprintf(reason, LAM_REASON_LENGTH, "is not a number with a unit");
+  } else if (LamTextHasDecimalComma(end)) {
+    snprintf(reason, LAM_REASON_LENGTH, LAM_DECIMAL_COMMA);
   } else if (!isfinite(number)) {
     snprintf(reason, LAM_REASON_LENGTH, "is too large");
   } else {

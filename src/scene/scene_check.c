@@ -50,6 +50,44 @@ static PetscErrorCode FailUnknown(const LamNode *node, const LamKey *map)
   PetscFunctionReturn(0);
 }
 
+/* True if the next entry of a list or map in brackets follows a plain number without a blank behind the comma. */
+static PetscBool GoesOn(const LamNode *node)
+{
+  const LamNode *next = node->next;
+  const char *end, *rest;
+
+  if (node->kind != LAM_NODE_SCALAR || !next || (next->name ? !next->is_null : next->kind != LAM_NODE_SCALAR))
+    return PETSC_FALSE;
+  rest = next->name ? next->name : next->text;
+  (void)LamNumberScan(node->text, &end);
+  return (PetscBool)(end > node->text && !*end && rest[0] >= '0' && rest[0] <= '9' &&
+                     (next->name ? next->name_line : next->line) == node->line &&
+                     (next->name ? next->name_column : next->column) == node->column + (int)(end - node->text) + 1);
+}
+
+/* True if a decimal comma has split a number in brackets. Of a list this is a guess, made only where other commas have
+   a blank behind them. */
+static PetscBool IsSplitByComma(const LamNode *node)
+{
+  PetscBool blanks = PETSC_FALSE;
+
+  if (!node->index) return GoesOn(node);
+  for (const LamNode *item = node->parent->first; item->next; item = item->next)
+    if (!GoesOn(item)) blanks = PETSC_TRUE;
+  return (PetscBool)(blanks && GoesOn(node));
+}
+
+/* The reason for a list of the wrong length, unless a comma has split an entry. */
+static const char *LengthReason(const LamNode *list, const char reason[])
+{
+  for (const LamNode *row = list->first; row; row = row->next) {
+    if (IsSplitByComma(row)) return LAM_DECIMAL_COMMA;
+    for (const LamNode *item = row->first; item; item = item->next)
+      if (IsSplitByComma(item)) return LAM_DECIMAL_COMMA;
+  }
+  return reason;
+}
+
 /* Raises "<reason>; write <expectation>". */
 static PetscErrorCode FailValue(const LamNode *node, const LamKey *key, PetscBool single, const char reason[])
 {
@@ -57,7 +95,8 @@ static PetscErrorCode FailValue(const LamNode *node, const LamKey *key, PetscBoo
 
   PetscFunctionBeginUser;
   LamKeyExpectation(key, single, expected);
-  PetscCall(LamSceneRaise(node, LAM_MISTAKE_VALUE, NULL, "%s; write %s", reason, expected));
+  PetscCall(LamSceneRaise(node, LAM_MISTAKE_VALUE, NULL, "%s; write %s",
+                          IsSplitByComma(node) ? LAM_DECIMAL_COMMA : reason, expected));
   PetscFunctionReturn(0);
 }
 
@@ -81,6 +120,7 @@ static const char *ScanPlain(const char text[], LamKeyType type, PetscReal *numb
   *number = LamNumberScan(text, &end);
   if (LamTextIsNonFinite(text)) return "is not a finite number";
   if (end == text) return "is not a number";
+  if (LamTextHasDecimalComma(end)) return LAM_DECIMAL_COMMA;
   if (*end) return "is not a plain number";
   if (!isfinite(*number)) return "is too large";
   return type == LAM_KEY_INTEGER && strspn(text, "+-0123456789") != strlen(text) ? "is not a whole number" : "";
@@ -150,7 +190,7 @@ static PetscErrorCode ReadVector(LamNode *node, const LamKey *key)
   PetscFunctionBeginUser;
   PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_LIST));
   snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
-  if (node->count != key->size) PetscCall(FailValue(node, key, PETSC_FALSE, reason));
+  if (node->count != key->size) PetscCall(FailValue(node, key, PETSC_FALSE, LengthReason(node, reason)));
   for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadSingle(item, key, &node->value));
   PetscFunctionReturn(0);
 }
@@ -166,7 +206,7 @@ static PetscErrorCode ReadTensor(LamNode *node, const LamKey *key)
   square = (PetscBool)(node->count == 2 || node->count == 3);
   for (const LamNode *row = node->first; row; row = row->next)
     if (row->kind != LAM_NODE_LIST || row->count != node->count) square = PETSC_FALSE;
-  if (!square) PetscCall(FailValue(node, key, PETSC_FALSE, "is no square tensor"));
+  if (!square) PetscCall(FailValue(node, key, PETSC_FALSE, LengthReason(node, "is no square tensor")));
   for (const LamNode *row = node->first; row; row = row->next)
     for (const LamNode *item = row->first; item; item = item->next) PetscCall(ReadSingle(item, key, &read));
   node->value.count = LAM_VALUE_SIZE;
@@ -211,6 +251,7 @@ static PetscErrorCode ReadMap(LamNode *node, const LamKey *key)
 
     if (length < PATH_LENGTH) entry_key = LamKeyFind(path);
     if (!entry_key || !LamKeyIsChild(entry_key, key)) PetscCall(FailUnknown(entry, key));
+    if (IsSplitByComma(entry)) PetscCall(FailValue(entry, entry_key, PETSC_FALSE, LAM_DECIMAL_COMMA));
     PetscCall(LamSceneReadNode(entry, entry_key));
   }
   for (PetscInt i = 0; (child = LamKeyAt(i)); i++) {
