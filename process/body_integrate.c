@@ -397,7 +397,8 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   PetscCall(LamIntegratorStart(base, Residual, Roots, in));
   LamCallSUN(IDAWFtolerances(base->ida, Weights));
   LamCallSUN(IDASetSuppressAlg(base->ida, SUNTRUE));
-  LamCallSUN(IDASetMaxStep(base->ida, body->process->spec->output)); /* transient events must not be missed */
+  LamCallSUN(
+      IDASetMaxStep(base->ida, LamProcessOutputInterval(body->process))); /* transient events must not be missed */
   LamCallSUN(IDASetMaxConvFails(base->ida, MAX_FAILURES));
   PetscCall(CreateSolver(in));
   LamCallSUN(IDASetNonlinearSolver(base->ida, in->solver));

@@ -219,15 +219,3 @@ PetscErrorCode LamProcessReport(LamProcess process, const LamProcessTissue *tiss
   if (process->monitor) PetscCall(process->monitor(&state, process->monitor_ctx));
   PetscFunctionReturn(0);
 }
-
-void LamProcessNextOutput(LamProcess process)
-{
-  const PetscReal end = process->spec->duration;
-
-  if (process->next_output >= end) {
-    process->next_output = PETSC_INFINITY;
-    return;
-  }
-  process->next_output = (PetscReal)++process->outputs * process->spec->output;
-  if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
-}

@@ -99,7 +99,6 @@ struct LamProcess_s {
   PetscReal leg_start, leg_F[9], leg_P[9], leg_load; /* state at which the present part began */
   PetscBool found[LAM_EVENT_COUNT];                  /* events that are no longer searched for */
   PetscReal next_output;
-  PetscInt64 outputs;
   LamEvaluation last;   /* last evaluation for which the responder was queried */
   PetscReal last_scale; /* wall factor of that evaluation */
   PetscBool last_known;
@@ -208,5 +207,7 @@ PetscReal LamProcessExcess(LamProcess process, LamEvent event, const LamEvaluati
 PetscErrorCode LamProcessReport(LamProcess process, const LamProcessTissue *tissue, LamEvent event);
 /* Advances to the next output time; infinite after the last one. */
 void LamProcessNextOutput(LamProcess process);
+/* Between outputs in the present part of the program; s. */
+PetscReal LamProcessOutputInterval(LamProcess process);
 
 #endif

@@ -128,6 +128,69 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
   StartLeg(process, stress);
 }
 
+/* ---- outputs ---- */
+
+/* A part of the program: number, repetition, and the time at which it begins. */
+typedef struct {
+  PetscInt leg, cycle;
+  PetscReal start;
+} Part;
+
+static const LamProcessLeg *LegOf(LamProcess process, const Part *part)
+{
+  return part->cycle < process->spec->repeat ? &process->spec->legs[part->leg] : NULL;
+}
+
+/* The sums are those of StartLeg, so that ends of parts are the same numbers. */
+static void Advance(LamProcess process, Part *part)
+{
+  part->start += process->spec->legs[part->leg].duration;
+  if (++part->leg < process->spec->leg_count) return;
+  part->leg = 0;
+  part->cycle++;
+}
+
+PetscReal LamProcessOutputInterval(LamProcess process)
+{
+  const Part part = {process->leg, process->cycle, process->leg_start};
+  const LamProcessLeg *leg = LegOf(process, &part);
+
+  return leg && leg->output > 0 ? leg->output : process->spec->output;
+}
+
+/* The first multiple of an interval, counted from `start`, after a time. */
+static PetscReal NextMultiple(PetscReal start, PetscReal interval, PetscReal time)
+{
+  const PetscReal rounding = 1e-6; /* of the interval: more than a million outputs have, less than anyone sees */
+
+  return start + (PetscFloorReal((time - start) / interval + rounding) + 1) * interval;
+}
+
+/* Multiples of the interval of the process; within a part that has its own, multiples of that, its start and its end.
+ */
+void LamProcessNextOutput(LamProcess process)
+{
+  const PetscReal end = process->spec->duration, now = process->next_output, tolerance = LamTimeTolerance(process);
+  Part part = {process->leg, process->cycle, process->leg_start};
+  const LamProcessLeg *leg;
+
+  if (now >= end) {
+    process->next_output = PETSC_INFINITY;
+    return;
+  }
+  while ((leg = LegOf(process, &part)) && part.start + leg->duration <= now + tolerance) Advance(process, &part);
+  if (leg && leg->output > 0) {
+    process->next_output = PetscMin(NextMultiple(part.start, leg->output, now), part.start + leg->duration);
+  } else {
+    process->next_output = NextMultiple(0, process->spec->output, now);
+    for (; leg && part.start < process->next_output; leg = LegOf(process, &part)) {
+      if (leg->output > 0 && leg->duration > 0) process->next_output = part.start;
+      Advance(process, &part);
+    }
+  }
+  if (process->next_output > end * (1 - 1e-12)) process->next_output = end; /* the last one */
+}
+
 /* ---- the start ---- */
 
 PetscErrorCode LamProcessBegin(LamProcess process)
@@ -149,7 +212,6 @@ PetscErrorCode LamProcessBegin(LamProcess process)
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->passed_walls[k] = 1;
   process->next_output = 0;
   process->snaps = 0;
-  process->outputs = 0;
   process->counts = (LamProcessCounts){0};
   LamProcessStartProgram(process, (const PetscReal[9]){0});
   LamProcessNextSegment(process, &process->segment);

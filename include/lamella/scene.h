@@ -334,6 +334,7 @@ typedef struct {
 /* A leg of the load program: the prescribed values change linearly to these. */
 typedef struct {
   PetscReal duration;       /* s; 0: a jump */
+  PetscReal output;         /* s; interval between outputs in this leg; 0: that of the process */
   PetscReal F[9];           /* relative to the inflated state; an initial guess where P is given */
   LamStressControl control; /* P: per reference area before inflation */
   PetscReal load;           /* body: load parameter at the end of the leg */
@@ -358,6 +359,8 @@ typedef struct {
 typedef struct {
   char path[PETSC_MAX_PATH_LEN];
   char *text; /* the file's text, for provenance; owned */
+  PetscInt warning_count;
+  char **warnings; /* what is accepted and probably a mistake, in the form of LamSceneRead's messages; owned */
   LamScales scales;
   LamMicrostructure micro;
   PetscReal turgor;             /* default turgor of a load; in C1 + C2 */

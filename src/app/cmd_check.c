@@ -5,7 +5,7 @@
 #include "rounding.h"
 #include "map.h"
 #include "names.h"
-#include "plot_time.h"
+#include "quantity_text.h"
 #include <math.h>
 
 typedef struct {
@@ -81,6 +81,14 @@ static json_t *Regions(const Check *check)
   return list;
 }
 
+static json_t *Warnings(const LamScene *scene)
+{
+  json_t *list = json_array();
+
+  for (PetscInt k = 0; k < scene->warning_count; k++) json_array_append_new(list, json_string(scene->warnings[k]));
+  return list;
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -101,6 +109,7 @@ static PetscErrorCode PrintObject(const Check *check)
   json_object_set_new(o, "rounding", /* a bound of that of the tangent; a warning if it is beyond the accuracy */
                       json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
                                 check->digits[0] ? check->digits : NULL));
+  json_object_set_new(o, "warnings", Warnings(scene));
   if (micro->is_patch)
     json_object_set_new(o, "patch",
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
@@ -317,6 +326,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
     PrintModel(&check);
     if (check.digits[0]) printf("%-12s %s\n", "rounding", check.digits);
     PrintCost(&check);
+    for (PetscInt k = 0; k < check.scene->warning_count; k++) printf("%-12s %s\n", "warning", check.scene->warnings[k]);
   }
   PetscCall(PetscFree(check.regions));
   PetscCall(LamSceneDestroy(&check.scene));

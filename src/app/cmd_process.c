@@ -6,8 +6,8 @@
 #include "app.h"
 #include "clock.h"
 #include "fe2_report.h"
-#include "plot_time.h"
 #include "process_run.h"
+#include "quantity_text.h"
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -324,6 +324,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   run.reporter = LamConsoleReporter(&console);
   run.step_ctx = &console;
   PetscCall(LamSceneRead(run.scene_path, &run.scene));
+  if (LamAppIsRoot()) LamReportScene(&run.reporter, run.scene);
   if (run.scene->has_macro && run.scene->has_process)
     PetscCall(RunBody(&run, frames, &console, exit_status));
   else

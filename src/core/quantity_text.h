@@ -21,6 +21,9 @@ PetscBool LamTextHasDecimalComma(const char end[]);
 #define LAM_DECIMAL_COMMA "has a decimal comma, and the decimal sign is the point"
 PetscBool LamTextIsNonFinite(const char text[]); /* "nan", ".inf", "-Infinity", ... */
 
+/* A suitable unit of time for a duration, and its length in s. */
+const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
+
 /*
   As LamQuantityParse, but for invalid text `reason` says why; otherwise it is empty. Only failures of the units
   library are errors.

@@ -266,3 +266,16 @@ PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, Petsc
              reason, LamDimensionNames[dimension], LamDimensionExamples[dimension]);
   PetscFunctionReturn(0);
 }
+
+const char *LamTimeUnit(PetscReal duration, PetscReal *seconds)
+{
+  static const struct {
+    const char *name;
+    PetscReal seconds;
+  } units[] = {{"day", 86400}, {"h", 3600}, {"min", 60}, {"s", 1}};
+  size_t k = 0;
+
+  while (k + 1 < PETSC_STATIC_ARRAY_LENGTH(units) && duration < 2 * units[k].seconds) k++;
+  *seconds = units[k].seconds;
+  return units[k].name;
+}

@@ -15,6 +15,8 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscFunctionBeginUser;
   if (!*scene) PetscFunctionReturn(0);
   PetscCall(PetscFree((*scene)->text));
+  for (PetscInt k = 0; k < (*scene)->warning_count; k++) PetscCall(PetscFree((*scene)->warnings[k]));
+  PetscCall(PetscFree((*scene)->warnings));
   PetscCall(PetscFree((*scene)->loads));
   PetscCall(PetscFree((*scene)->controls));
   PetscCall(LamMicrostructureDestroy(&(*scene)->micro));

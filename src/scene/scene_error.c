@@ -34,26 +34,50 @@ static void CopyPrintable(const char text[], size_t shown, char copy[VALUE_SHOWN
   memcpy(copy + n, n < length ? "..." : "", n < length ? 4 : 1);
 }
 
-PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
+static void Compose(const LamNode *node, LamMistake mistake, const char key[], const char format[], va_list arguments,
+                    char message[MESSAGE_LENGTH])
 {
   const PetscBool at_name = (PetscBool)(mistake == LAM_MISTAKE_NAME || (mistake == LAM_MISTAKE_MISSING && node->name));
   const char *full = node->document->name;
   const size_t length = strlen(full);
   const char *name = full + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
-  char path[KEY_LENGTH], shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH], message[MESSAGE_LENGTH];
-  va_list arguments;
+  char path[KEY_LENGTH], shown[VALUE_SHOWN + 4] = "", detail[DETAIL_LENGTH];
   size_t used;
 
-  PetscFunctionBeginUser;
   NodePath(node, path);
   used = strlen(path);
   if (key) snprintf(path + used, KEY_LENGTH - used, "%s%s", used ? "." : "", key);
   if (mistake == LAM_MISTAKE_VALUE && node->text) CopyPrintable(node->text, VALUE_SHOWN, shown);
-  va_start(arguments, format);
   vsnprintf(detail, sizeof(detail), format, arguments);
-  va_end(arguments);
-  snprintf(message, sizeof(message), "%s%s:%d:%d: %s%s%s%s%s", name == full ? "" : "...", name,
+  snprintf(message, MESSAGE_LENGTH, "%s%s:%d:%d: %s%s%s%s%s", name == full ? "" : "...", name,
            at_name ? node->name_line : node->line, at_name ? node->name_column : node->column, path,
            path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
+}
+
+PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
+{
+  char message[MESSAGE_LENGTH];
+  va_list arguments;
+
+  PetscFunctionBeginUser;
+  va_start(arguments, format);
+  Compose(node, mistake, key, format, arguments, message);
+  va_end(arguments);
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s", message);
+}
+
+PetscErrorCode LamSceneWarn(LamScene *scene, const LamNode *node, LamMistake mistake, const char key[],
+                            const char format[], ...)
+{
+  char message[MESSAGE_LENGTH];
+  va_list arguments;
+
+  PetscFunctionBeginUser;
+  va_start(arguments, format);
+  Compose(node, mistake, key, format, arguments, message);
+  va_end(arguments);
+  PetscCall(PetscRealloc((size_t)(scene->warning_count + 1) * sizeof(*scene->warnings), &scene->warnings));
+  PetscCall(PetscStrallocpy(message, &scene->warnings[scene->warning_count]));
+  scene->warning_count++;
+  PetscFunctionReturn(0);
 }

@@ -11,7 +11,8 @@ const char *const LamChangingNames[] = {LAM_CHANGING(LAM_NAME_ENTRY)};
 static const LamKey process_keys[] = {
     {MAP("process"), .example = "{duration: 14 day, kinetics: [...]}",
      .help = "For `lamella process`: tissue that changes in time."},
-    {TIME("process.duration"), INTO(LamProcessSpec, duration), REQUIRED, ABOVE(0), .example = "14 day",
+    {TIME("process.duration"), INTO(LamProcessSpec, duration), ABOVE(0),
+     .default_words = "up to the end of `program`, all its repetitions, and of `surroundings`", .example = "14 day",
      .help = "How long it is followed."},
     {TIME("process.output"), INTO(LamProcessSpec, output), ABOVE(0), .default_words = "a hundredth of the duration",
      .example = "6 h", .help = "Time between the states that are reported and written."},
@@ -110,6 +111,8 @@ static const LamKey process_keys[] = {
              "held."},
     {TIME("process.program[].for"), INTO(LamProcessLeg, duration), REQUIRED, FROM(0), .example = "10 s",
      .help = "How long it takes; 0 s: a jump."},
+    {TIME("process.program[].output"), INTO(LamProcessLeg, output), ABOVE(0), .default_words = "that of the process",
+     .example = "1 s", .help = "Time between states in this part, counted from its start; its end is one, too."},
     {TENSOR("process.program[].F"), INTO(LamProcessLeg, F), FREE, .default_words = "held",
      .example = "[[free, 0.1], [0, free]]",
      .help = "Deformation gradient at its end, from the inflated tissue; `free` where P is given."},
@@ -127,6 +130,7 @@ LAM_KEY_TABLE(LamProcessKeys, process_keys);
 #define MOLAR_VOLUME 18.05e-6   /* of water at 20 degC, m3/mol */
 
 enum { MAX_OUTPUTS = 1000000 };
+#define TOO_MANY_OUTPUTS "more than %d outputs in all; write a longer time"
 
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene)
 {
@@ -247,6 +251,39 @@ static PetscErrorCode BuildWater(const LamNode *block, LamScene *scene)
   LamSceneCheckName(!scene->has_macro || water->reflection != 0 || isfinite(water->permeability), block,
                     "has membranes that hold back neither water nor solutes, so no cell of the body has a turgor; "
                     "leave the block out, with rve.turgor: {pressure: 0 MPa}");
+  PetscFunctionReturn(0);
+}
+
+/* Osmotic pressure outside at the start; of two entries at time 0 the last one. */
+static PetscReal OutsideAtStart(const LamProcessSpec *spec)
+{
+  PetscInt k = 0;
+
+  while (k + 1 < spec->surroundings_count && spec->surroundings[k + 1].time <= 0) k++;
+  return spec->surroundings[k].outside;
+}
+
+/* Warns where the osmotic pressures hold another turgor than the cells have. Call after BuildSurroundings. */
+static PetscErrorCode WarnOfImbalance(const LamNode *block, LamScene *scene)
+{
+  const LamNode *node = LamNodeFind(block, "osmotic_pressure");
+  const LamWaterSpec *water = &scene->process.water;
+  const PetscReal MPa = scene->scales.stress * 1e-6, outside = OutsideAtStart(&scene->process);
+  const PetscReal held = PetscMax(0, water->reflection * (water->osmotic - outside)), turgor = scene->turgor;
+  char balance[LAM_REASON_LENGTH] = "";
+
+  PetscFunctionBeginUser;
+  if (!node || water->permeability == 0 || fabs(held - turgor) <= scene->accuracy * PetscMax(held, turgor))
+    PetscFunctionReturn(0);
+  if (water->reflection > 0)
+    snprintf(balance, sizeof(balance), "; leave it out, or write %.4g MPa, for a start in equilibrium",
+             (double)((turgor / water->reflection + outside) * MPa));
+  PetscCall(LamSceneWarn(scene, node, LAM_MISTAKE_VALUE, NULL,
+                         "with %.4g MPa outside it holds a turgor of %.4g MPa, but that of rve.turgor is %.4g MPa: %s, "
+                         "turgor %s by up to %.4g MPa%s",
+                         (double)(outside * MPa), (double)(held * MPa), (double)(turgor * MPa),
+                         isfinite(water->permeability) ? "from the start" : "at once",
+                         held > turgor ? "rises" : "falls", (double)(fabs(held - turgor) * MPa), balance));
   PetscFunctionReturn(0);
 }
 
@@ -399,25 +436,93 @@ static PetscErrorCode ReadLeg(const LamNode *entry, const LamScene *scene, LamPr
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildLegs(const LamNode *block, LamScene *scene)
+/* *cycle: the time that the program takes once. */
+static PetscErrorCode BuildLegs(const LamNode *block, LamScene *scene, PetscReal *cycle)
 {
   /* stress-free in the plane; F21 prevents rotation */
   LamProcessLeg leg = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .control = {.given = {1, 1, 0, 0, 1}, .share = 1}};
   const LamNode *list = LamNodeFind(block, "program"), *repeat = LamNodeFind(block, "repeat");
   LamProcessSpec *spec = &scene->process;
-  PetscReal cycle = 0;
 
   PetscFunctionBeginUser;
+  *cycle = 0;
   PetscCall(PetscMalloc1(list ? list->count : 1, &spec->legs));
   if (!list) spec->legs[spec->leg_count++] = leg;
   for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next) {
+    leg.output = 0;
     PetscCall(ReadLeg(entry, scene, &leg));
     spec->legs[spec->leg_count++] = leg;
-    LamSceneCheck(leg.duration != 0 || fabs(cycle - spec->duration) > 1e-9 * spec->duration, entry,
-                  "is a jump at the very end, of which nothing is seen; make process.duration longer");
-    cycle += leg.duration;
+    *cycle += leg.duration;
+    LamSceneCheck(!(leg.output > 0) || (PetscReal)spec->repeat * leg.duration / leg.output <= MAX_OUTPUTS,
+                  LamNodeFind(entry, "output"), TOO_MANY_OUTPUTS, MAX_OUTPUTS);
   }
-  LamSceneCheckName(!repeat || cycle > 0, repeat, "repeats a program that takes no time; give its parts a time");
+  LamSceneCheckName(!repeat || *cycle > 0, repeat, "repeats a program that takes no time; give its parts a time");
+  PetscFunctionReturn(0);
+}
+
+/* ---- duration ---- */
+
+#define SAME_TIME 1e-9 /* of the duration: above the rounding of a sum of times, below what anyone writes */
+
+/* The time in the unit of the longest of a message. */
+static void TimeText(PetscReal time, PetscReal longest, char text[LAM_REASON_LENGTH])
+{
+  PetscReal seconds;
+  const char *unit = LamTimeUnit(longest, &seconds);
+
+  snprintf(text, LAM_REASON_LENGTH, "%.6g %s", (double)(time / seconds), unit);
+}
+
+/* A jump at the end of the process is not seen. */
+static PetscErrorCode CheckJumps(const LamNode *list, const LamProcessSpec *spec, PetscReal cycle)
+{
+  PetscReal at = 0;
+  PetscInt k = 0;
+
+  PetscFunctionBeginUser;
+  for (const LamNode *entry = list ? list->first : NULL; entry; entry = entry->next, k++) {
+    const PetscReal before = cycle > 0 && at > 0 ? rint((spec->duration - at) / cycle) : 0; /* repetitions */
+    const PetscReal last = PetscMax(0, PetscMin(before, (PetscReal)(spec->repeat - 1))) * cycle + at;
+
+    LamSceneCheck(spec->legs[k].duration != 0 || fabs(last - spec->duration) > SAME_TIME * spec->duration, entry,
+                  "is a jump at the very end, of which nothing is seen; make process.duration longer");
+    at += spec->legs[k].duration;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The duration, where it is not given; warns of what lies beyond it, where it is. */
+static PetscErrorCode BuildDuration(const LamNode *block, LamScene *scene, PetscReal cycle)
+{
+  const LamNode *duration = LamNodeFind(block, "duration"), *surroundings = LamNodeFind(block, "surroundings");
+  LamProcessSpec *spec = &scene->process;
+  const PetscReal program = (PetscReal)spec->repeat * cycle;
+  const PetscReal bath = spec->surroundings[spec->surroundings_count - 1].time, end = PetscMax(program, bath);
+  char own[LAM_REASON_LENGTH], wanted[LAM_REASON_LENGTH], cut[LAM_REASON_LENGTH];
+
+  PetscFunctionBeginUser;
+  LamSceneRequire(
+      duration || end > 0, block, "duration",
+      "missing; write a time with its unit, larger than 0 s, such as 14 day, or a program or surroundings that "
+      "take time");
+  if (!duration) spec->duration = end;
+  PetscCall(CheckJumps(LamNodeFind(block, "program"), spec, cycle));
+  if (end <= spec->duration * (1 + SAME_TIME)) PetscFunctionReturn(0);
+  TimeText(spec->duration, end, own);
+  if (program > spec->duration * (1 + SAME_TIME)) {
+    TimeText(program, end, wanted);
+    TimeText(program - spec->duration, end, cut);
+    PetscCall(LamSceneWarn(scene, duration, LAM_MISTAKE_VALUE, NULL,
+                           "process.program%s takes %s, of which the last %s are cut off; write %s, or leave it out",
+                           spec->repeat > 1 ? ", with its repetitions," : "", wanted, cut, wanted));
+  }
+  if (bath > spec->duration * (1 + SAME_TIME)) {
+    TimeText(bath, end, wanted);
+    PetscCall(LamSceneWarn(scene, LamNodeFind(surroundings->last, "time"), LAM_MISTAKE_VALUE, NULL,
+                           "is never reached: the process ends at %s (process.duration, line %d); write %s there, or "
+                           "leave that out",
+                           own, duration->line, wanted));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -426,22 +531,24 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
   const LamNode *block = LamNodeFind(root, "process"), *inflate = LamNodeFind(block, "inflate");
   const LamNode *output = LamNodeFind(block, "output");
   LamProcessSpec *spec = &scene->process;
+  PetscReal cycle;
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
   scene->has_process = PETSC_TRUE;
   spec->inflate = (PetscBool)(scene->turgor != 0);
   PetscCall(LamSceneFill(block, &scene->scales, LamProcessSpec, spec));
-  if (!output) spec->output = spec->duration / 100;
   LamSceneCheckName(!scene->has_macro || !inflate, inflate, "is for one material point; of a body write macro.inflate");
   LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
                     "permeability: 0 m/s/MPa for cells that keep their water");
-  LamSceneCheck(spec->duration / spec->output <= MAX_OUTPUTS, output,
-                "more than %d outputs in all; write a longer time", MAX_OUTPUTS);
   PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
   PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
+  if (scene->process.has_water) PetscCall(WarnOfImbalance(LamNodeFind(block, "water"), scene));
   PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));
-  PetscCall(BuildLegs(block, scene));
+  PetscCall(BuildLegs(block, scene, &cycle));
+  PetscCall(BuildDuration(block, scene, cycle));
+  if (!output) spec->output = spec->duration / 100;
+  LamSceneCheck(spec->duration / spec->output <= MAX_OUTPUTS, output, TOO_MANY_OUTPUTS, MAX_OUTPUTS);
   PetscFunctionReturn(0);
 }

@@ -70,6 +70,10 @@ typedef enum {
 PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
     PETSC_ATTRIBUTE_FORMAT(4, 5);
 
+/* Adds the same message to the warnings of the scene. */
+PetscErrorCode LamSceneWarn(LamScene *scene, const LamNode *node, LamMistake mistake, const char key[],
+                            const char format[], ...) PETSC_ATTRIBUTE_FORMAT(5, 6);
+
 /* PetscCheck for scenes: if the condition is false the message refers to the value, to the key, or to a missing key. */
 #define LamSceneUnless(condition, ...)                                                                                 \
   do {                                                                                                                 \

@@ -37,6 +37,11 @@ void LamReportWarning(const LamReporter *reporter, const char format[], ...)
   va_end(values);
 }
 
+void LamReportScene(const LamReporter *reporter, const LamScene *scene)
+{
+  for (PetscInt k = 0; k < scene->warning_count; k++) LamReportWarning(reporter, "%s", scene->warnings[k]);
+}
+
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
 {
   PetscFunctionBeginUser;

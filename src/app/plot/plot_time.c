@@ -2,6 +2,7 @@
   Quantities against time, for pictures of processes: reading, charts, frames of films.
 */
 #include "plot_time.h"
+#include "quantity_text.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,19 +11,6 @@ static const LamColour Event = {0.45, 0.45, 0.5}, Now = {0.75, 0.1, 0.1};
 static const double PictureWidth = 210; /* of a frame, with its colour bar */
 
 /* ---- reading ---- */
-
-const char *LamTimeUnit(PetscReal duration, PetscReal *seconds)
-{
-  static const struct {
-    const char *name;
-    PetscReal seconds;
-  } units[] = {{"day", 86400}, {"h", 3600}, {"min", 60}, {"s", 1}};
-  size_t k = 0;
-
-  while (k + 1 < PETSC_STATIC_ARRAY_LENGTH(units) && duration < 2 * units[k].seconds) k++;
-  *seconds = units[k].seconds;
-  return units[k].name;
-}
 
 PetscErrorCode LamTimeColumn(LamTimeLine *line, const char name[], PetscBool optional, const PetscReal **values)
 {

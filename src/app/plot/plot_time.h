@@ -26,8 +26,6 @@ typedef struct {
   } column[LAM_TIME_COLUMNS];
 } LamTimeLine;
 
-/* A suitable unit of time for a duration, and its length in s. */
-const char *LamTimeUnit(PetscReal duration, PetscReal *seconds);
 /* Reads a file with n states. PETSC_ERR_USER_INPUT if it lacks something, as the next but one. */
 PetscErrorCode LamTimeLineRead(const char path[], PetscInt n, LamTimeLine *line);
 PetscErrorCode LamTimeLineDestroy(LamTimeLine *line);

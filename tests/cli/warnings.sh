@@ -1,0 +1,64 @@
+# What is accepted and probably a mistake: one line with file, line, key, value and remedy, in `check` and on stderr.
+. "$(dirname "$0")/common.sh"
+
+# warned COMMAND SCENE WORDS: `check` and the command tell the words once, the command on stderr
+warned() {
+  expect 0 "$lamella" check "$2"
+  [ "$(grep -c "^warning .*$3" out.txt)" = 1 ] || fail "check $2 does not tell \"$3\": $(cat out.txt)"
+  expect 0 "$lamella" check "$2" --json
+  [ "$(grep -c "\"warnings\": \[\".*$3" out.txt)" = 1 ] || fail "check $2 --json does not tell \"$3\": $(cat out.txt)"
+  expect 0 "$lamella" "$1" "$2" --json --quiet
+  [ "$(grep -c "^lamella $1: .*$3" err.txt)" = 1 ] || fail "$1 $2 does not tell \"$3\": $(cat err.txt)"
+}
+# silent COMMAND SCENE
+silent() {
+  expect 0 "$lamella" check "$2" --json
+  grep -q '"warnings": \[\]' out.txt || fail "check $2 warns: $(cat out.txt)"
+  expect 0 "$lamella" "$1" "$2" --json
+  [ ! -s err.txt ] || fail "$1 $2 warns: $(cat err.txt)"
+}
+soft() { tissue turgor="mode: prescribed, pressure: ${1:-0.02} MPa" mesh='along: 2, through: 1'; }
+
+# a process that is shorter than its program or its surroundings, and one whose length is theirs
+program='  program: [{for: 1 h}, {for: 30 min, F: [[1.01, 0], [0, 1]]}]'
+printf 'process:\n  duration: 1 h\n%s\n' "$program" | soft >cut.yaml
+warned process cut.yaml \
+  'cut.yaml:9:13: process.duration: 1 h: process.program takes 90 min, of which the last 30 min are cut off; write 90 min, or leave it out'
+printf 'process:\n%s\n  repeat: 2\n  output: 1 h\n' "$program" | soft >whole.yaml
+silent process whole.yaml
+[ "$(sed -n 's/.*"time": \([0-9.]*\).*/\1/p' out.txt | tr '\n' ' ')" = "0.0 3600.0 7200.0 10800.0 " ] ||
+  fail "not the whole program twice: $(cat out.txt)"
+printf 'process:\n  duration: 1 h\n  surroundings: [{time: 0 h}, {time: 2 h, temperature: 30 degC}]\n' | soft >bath.yaml
+warned process bath.yaml 'bath.yaml:10:38: process.surroundings\[2\].time: 2 h: is never reached: the process ends at 1 h (process.duration, line 9)'
+sed '/duration/d' bath.yaml >bath-whole.yaml
+silent process bath-whole.yaml
+
+# output by part of the program: its start, its multiples and its end
+cat - <<'YAML' | soft >parts.yaml
+process:
+  output: 10 min
+  program: [{for: 25 min}, {for: 10 s, F: [[1.02, 0], [0, 1]], output: 4 s}, {for: 5 min}]
+YAML
+silent process parts.yaml
+[ "$(sed -n 's/.*"time": \([0-9.]*\).*/\1/p' out.txt | tr '\n' ' ')" = "0.0 600.0 1200.0 1500.0 1504.0 1508.0 1510.0 1800.0 1810.0 " ] ||
+  fail "not the times of the parts: $(cat out.txt)"
+
+# water that is not in equilibrium at the start
+water() { # OSMOTIC PERMEABILITY
+  cat - <<YAML | soft 0.2
+process:
+  duration: 10 min
+  output: 10 min
+  water: {permeability: ${2:-1e-7 m/s/MPa}, osmotic_pressure: $1 MPa}
+  surroundings: [{time: 0 h, outside: 0.4 MPa}]
+YAML
+}
+water 0.7 >swells.yaml
+warned process swells.yaml \
+  'swells.yaml:11:57: process.water.osmotic_pressure: 0.7 MPa: with 0.4 MPa outside it holds a turgor of 0.3 MPa, but that of rve.turgor is 0.2 MPa: from the start, turgor rises by up to 0.1 MPa; leave it out, or write 0.6 MPa'
+water 0.5 infinite >shrinks.yaml
+warned process shrinks.yaml 'at once, turgor falls by up to 0.1 MPa'
+water 0.6 >even.yaml
+silent process even.yaml
+water 0.7 '0 m/s/MPa' >closed.yaml
+silent process closed.yaml
