@@ -116,9 +116,9 @@ static PetscErrorCode MeanWeights(LamMacro macro, LamMacroBorder *border)
   PetscCall(DMLocalToGlobal(macro->dm, local, ADD_VALUES, border->weight));
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &length, 1, MPIU_REAL, MPIU_SUM, macro->comm));
-  PetscCheck(length > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.control: on: %s: is a point or lies inside the body; name a piece of its boundary",
-             macro->scene->macro.control.on);
+  LamMacroRequire(length > 0, macro, &macro->scene->macro.control.place,
+                  "macro.control: on: %s: is a point or lies inside the body; name a piece of its boundary",
+                  macro->scene->macro.control.on);
   PetscCall(VecScale(border->weight, 1 / length));
   PetscCall(VecCopy(border->weight, border->row));
   PetscCall(VecDot(border->weight, macro->u, &border->base));

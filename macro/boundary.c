@@ -18,15 +18,17 @@ PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[])
   return set >= 0 && macro->sets[p - macro->mesh_start] >> set & 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscErrorCode CheckName(LamMacro macro, const char key[], const char on[])
+static PetscErrorCode CheckName(LamMacro macro, const char key[], const LamScenePlace *place, const char on[])
 {
   char names[LAM_MESSAGE_LENGTH] = "";
 
   PetscFunctionBeginUser;
   if (LamMacroFindSet(macro, on) >= 0) PetscFunctionReturn(0);
   for (PetscInt s = 0; s < macro->set_count; s++) LamNamesAppend(sizeof(names), names, ", ", macro->set_name[s]);
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: on: %s: no such boundary of the mesh; there %s %s", key, on,
-          macro->set_count == 1 ? "is" : "are", macro->set_count ? names : "none");
+  LamMacroRequire(PETSC_FALSE, macro, place, "%s: on: %s: no such boundary of the mesh; there %s %s", key, on,
+                  macro->set_count == 1 ? "is" : "are",
+                  macro->set_count ? names : "none; name its sides as physical groups of lines");
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroBoundaryCheck(LamMacro macro)
@@ -35,8 +37,8 @@ PetscErrorCode LamMacroBoundaryCheck(LamMacro macro)
 
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < spec->boundary_count; b++)
-    PetscCall(CheckName(macro, "macro.boundary", spec->boundary[b].on));
-  if (spec->control.on[0]) PetscCall(CheckName(macro, "macro.control", spec->control.on));
+    PetscCall(CheckName(macro, "macro.boundary", &spec->boundary[b].place, spec->boundary[b].on));
+  if (spec->control.on[0]) PetscCall(CheckName(macro, "macro.control", &spec->control.place, spec->control.on));
   PetscFunctionReturn(0);
 }
 
@@ -162,10 +164,10 @@ static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
       AddNode(macro, &macro->nodes[k], u, (const PetscReal(*)[2])normals, symmetry_only, &worst);
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
-  PetscCheck(worst < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: %s and %s prescribe different displacements where they meet; "
-             "leave that component `free` on one of them",
-             spec->boundary[worst % LAM_MAX_BOUNDARIES].on, spec->boundary[worst / LAM_MAX_BOUNDARIES].on);
+  LamMacroRequire(worst < 0, macro, &spec->boundary[worst / LAM_MAX_BOUNDARIES].place,
+                  "macro.boundary: %s and %s prescribe different displacements where they meet; "
+                  "leave that component `free` on one of them",
+                  spec->boundary[worst % LAM_MAX_BOUNDARIES].on, spec->boundary[worst / LAM_MAX_BOUNDARIES].on);
   PetscFunctionReturn(0);
 }
 
@@ -323,9 +325,9 @@ PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
   PetscCall(LamMacroBordersCreate(macro, PETSC_TRUE));
   PetscCall(AddNodes(macro, PETSC_FALSE));
   PetscCall(HeldMotions(macro, basis, &rank));
-  PetscCheck(rank == 3, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: the displacements leave the body free to move or turn as a whole; prescribe both "
-             "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
+  LamMacroRequire(rank == 3, macro, &macro->scene->macro.boundary[0].place, "macro.boundary: %s",
+                  "the displacements leave the body free to move or turn as a whole; prescribe both "
+                  "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
   PetscCall(LamMacroBordersStart(macro));
   PetscCall(LamMacroObstaclesCreate(macro));
   PetscFunctionReturn(0);

@@ -102,9 +102,10 @@ PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const La
     *kind = &macro->kinds[k];
     if ((*kind)->polytope == polytope) PetscFunctionReturn(0);
   }
-  PetscCheck(simplex || polytope == DM_POLYTOPE_QUADRILATERAL || polytope == DM_POLYTOPE_HEXAHEDRON, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT, "the mesh has an element of type %s; mesh the body with triangles or quadrilaterals",
-             DMPolytopeTypes[polytope]);
+  LamMacroRequire(simplex || polytope == DM_POLYTOPE_QUADRILATERAL || polytope == DM_POLYTOPE_HEXAHEDRON, macro,
+                  &macro->scene->macro.mesh_place,
+                  "macro.mesh: the mesh has an element of type %s; mesh the body with triangles or quadrilaterals",
+                  DMPolytopeTypes[polytope]);
   macro->kinds[macro->kind_count].polytope = polytope;
   *kind = &macro->kinds[macro->kind_count++];
   PetscCall(PetscFECreateLagrange(PETSC_COMM_SELF, macro->dim, 1, simplex, 2, TENSOR_POINTS - 1, &fe));

@@ -61,10 +61,10 @@ PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundar
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPIU_MAX, macro->comm));
-  PetscCheck(length > 0 && range[0] + range[1] < tiny, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.boundary: on: %s: %s", boundary->on,
-             boundary->kind == LAM_BOUNDARY_PLATE
-                 ? "plate: the side is curved; say from where the plate looks into the body, such as normal: [0, -1]"
-                 : "symmetry needs a straight side, which this is not; name the straight parts of it on their own");
+  LamMacroRequire(
+      length > 0 && range[0] + range[1] < tiny, macro, &boundary->place, "macro.boundary: on: %s: %s", boundary->on,
+      boundary->kind == LAM_BOUNDARY_PLATE
+          ? "plate: the side is curved; say from where the plate looks into the body, such as normal: [0, -1]"
+          : "symmetry needs a straight side, which this is not; name the straight parts of it on their own");
   PetscFunctionReturn(0);
 }

@@ -285,13 +285,22 @@ PetscErrorCode LamMacroMeshCreate(LamMacro macro);
 PetscErrorCode LamMacroMeshDestroy(LamMacro macro);
 /* Lists the nodes of this rank, once there are vectors. */
 PetscErrorCode LamMacroListNodes(LamMacro macro);
+/* PetscCheck of input that only the mesh shows to be wrong: the message begins with the place in the scene's file.
+   `format` is a literal. */
+#define LamMacroRequire(condition, macro, scene_place, format, ...)                                                    \
+  do {                                                                                                                 \
+    char at_[LAM_PLACE_TEXT];                                                                                          \
+    PetscCheck(condition, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: " format,                                        \
+               LamScenePlaceText((macro)->scene, scene_place, at_), __VA_ARGS__);                                      \
+  } while (0)
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
 /* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
 /* mesh_gmsh.c */
-PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm);
+/* `key`: "scene.yaml:6:16: macro.mesh.gmsh", for messages. */
+PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char key[], const char path[], DM *dm);
 /* Whether the file is safe to read for PETSc, which does not check it; `why`: reason if not. */
 #define LAM_GMSH_WHY 200
 PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);

@@ -80,8 +80,9 @@ static PetscErrorCode AddSet(LamMacro macro, DMLabel label, PetscInt value, cons
   const unsigned int bit = 1u << macro->set_count;
 
   PetscFunctionBeginUser;
-  PetscCheck(macro->set_count < LAM_MACRO_SETS, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "the mesh has more than %d named boundaries", LAM_MACRO_SETS);
+  LamMacroRequire(macro->set_count < LAM_MACRO_SETS, macro, &macro->scene->macro.mesh_place,
+                  "macro.mesh: the mesh has more than %d named boundaries; join some of its physical groups",
+                  LAM_MACRO_SETS);
   PetscCall(PetscStrncpy(macro->set_name[macro->set_count++], name, LAM_NAME_LENGTH));
   for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
     PetscBool on;
@@ -94,8 +95,9 @@ static PetscErrorCode AddSet(LamMacro macro, DMLabel label, PetscInt value, cons
 static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, PetscInt value, const char name[])
 {
   PetscFunctionBeginUser;
-  PetscCheck(macro->group_count < LAM_MACRO_GROUPS, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "the mesh has more than %d named regions", LAM_MACRO_GROUPS);
+  LamMacroRequire(macro->group_count < LAM_MACRO_GROUPS, macro, &macro->scene->macro.mesh_place,
+                  "macro.mesh: the mesh has more than %d named regions; join some of its physical groups",
+                  LAM_MACRO_GROUPS);
   PetscCall(PetscStrncpy(macro->group_name[macro->group_count], name, LAM_NAME_LENGTH));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     PetscBool in;
@@ -323,9 +325,11 @@ static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, P
     }
   }
   det = Invert(dim, J, inverse);
-  PetscCheck(det > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "element %d of the mesh is inside out or has no area, near (%g, %g)", (int)element->number,
-             (double)place[0], (double)place[1]);
+  LamMacroRequire(
+      det > 0, macro, &macro->scene->macro.mesh_place,
+      "macro.mesh: element %d of the mesh is inside out or has no area, near (%g, %g) in its unit; mend the "
+      "mesh there",
+      (int)element->number, (double)place[0], (double)place[1]);
   macro->weight[element->first + q] = kind->weight[q] * det;
   for (PetscInt a = 0; a < kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
@@ -383,9 +387,11 @@ static PetscErrorCode MapElements(LamMacro macro)
 /* ---- creation and destruction ---- */
 
 /* The undistributed mesh, in macro lengths. */
-static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm)
+static PetscErrorCode CreateMesh(MPI_Comm comm, const LamScene *scene, DM *dm)
 {
+  const LamMacroSpec *spec = &scene->macro;
   const PetscReal lower[2] = {0, 0};
+  char at[LAM_PLACE_TEXT], key[LAM_PLACE_TEXT + 20];
 
   PetscFunctionBeginUser;
   if (spec->source == LAM_MESH_BOX)
@@ -397,8 +403,10 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const LamMacroSpec *spec, DM *dm
 #endif
   else if (spec->source == LAM_MESH_DISC)
     PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));
-  else
-    PetscCall(LamMacroGmshCreate(comm, spec->gmsh, dm));
+  else {
+    snprintf(key, sizeof(key), "%s: macro.mesh.gmsh", LamScenePlaceText(scene, &spec->mesh_place, at));
+    PetscCall(LamMacroGmshCreate(comm, key, spec->gmsh, dm));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -469,7 +477,7 @@ static PetscErrorCode NumberUnknowns(LamMacro macro)
 PetscErrorCode LamMacroMeshCreate(LamMacro macro)
 {
   PetscFunctionBeginUser;
-  PetscCall(CreateMesh(macro->comm, &macro->scene->macro, &macro->dm));
+  PetscCall(CreateMesh(macro->comm, macro->scene, &macro->dm));
   PetscCall(DMGetDimension(macro->dm, &macro->dim));
   PetscCall(CompleteLabels(macro->dm));
   PetscCall(Distribute(macro));

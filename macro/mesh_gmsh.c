@@ -6,7 +6,7 @@
 #include "macro_impl.h"
 
 /* Rank 0 checks the file before PETSc reads it: PETSc does not validate it, and its error messages do not name it. */
-static PetscErrorCode CheckFile(MPI_Comm comm, const char path[])
+static PetscErrorCode CheckFile(MPI_Comm comm, const char key[], const char path[])
 {
   char why[LAM_GMSH_WHY] = "";
   PetscBool good = PETSC_TRUE;
@@ -17,7 +17,7 @@ static PetscErrorCode CheckFile(MPI_Comm comm, const char path[])
   if (rank == 0) good = LamGmshCheck(path, why);
   PetscCallMPI(MPI_Bcast(&good, 1, MPIU_BOOL, 0, comm));
   PetscCallMPI(MPI_Bcast(why, sizeof(why), MPI_CHAR, 0, comm));
-  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "macro.mesh.gmsh: %s: %s", path, why);
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s: %s", key, path, why);
   PetscFunctionReturn(0);
 }
 
@@ -43,19 +43,19 @@ static PetscErrorCode Read(MPI_Comm comm, const char path[], PetscBool curved, D
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char path[], DM *dm)
+PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char key[], const char path[], DM *dm)
 {
   PetscErrorCode curved, straight = 1;
 
   PetscFunctionBeginUser;
-  PetscCall(CheckFile(comm, path));
+  PetscCall(CheckFile(comm, key, path));
   PetscCall(Read(comm, path, PETSC_TRUE, dm, &curved));
   if (curved) PetscCall(Read(comm, path, PETSC_FALSE, dm, &straight));
   PetscCheck(!curved || straight, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.mesh.gmsh: %s: PETSc reads quadratic meshes of triangles alone, or of quadrilaterals with a middle "
+             "%s: %s: PETSc reads quadratic meshes of triangles alone, or of quadrilaterals with a middle "
              "node alone, which this is not; mesh with one kind of elements, or with straight edges (gmsh -order 1)",
-             path);
+             key, path);
   PetscCheck(!curved, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "macro.mesh.gmsh: %s: PETSc cannot read this mesh; write it with gmsh -2 -format msh41 or msh22", path);
+             "%s: %s: PETSc cannot read this mesh; write it with gmsh -2 -format msh41 or msh22", key, path);
   PetscFunctionReturn(0);
 }

@@ -33,6 +33,7 @@ typedef struct {
   PetscBool binary, swapped;
   int64_t first, span;  /* node tags: smallest, range */
   unsigned char *known; /* [span] the node exists; owned */
+  PetscHSetIJ groups;   /* physical groups with a name: dimension, tag; owned */
   PetscHSetIJ entities; /* dimension, tag; owned */
   PetscHSetIJ edges,
       segments; /* edges of two-dimensional and of one-dimensional elements: smaller node, larger node; owned */
@@ -215,7 +216,7 @@ static PetscBool PhysicalName(Mesh *m)
   if (IsTaken(from + 1, (size_t)(to - from - 1)))
     return Wrong(m, "a physical group cannot have the name %.*s; give it another", (int)(to - from - 1), from + 1);
   m->at = line + 1;
-  return PETSC_TRUE;
+  return Add(m, m->groups, dimension, tag);
 }
 
 static PetscBool PhysicalNames(Mesh *m)
@@ -378,6 +379,27 @@ static PetscBool ElementNodes(Mesh *m, int kind)
   return PETSC_TRUE;
 }
 
+/* Tags of an element of format 2.2: of its physical group, its entity, its partitions. PETSc takes each for one of a
+   physical group. */
+static PetscBool OldTags(Mesh *m, int kind, int64_t tags)
+{
+  const int64_t dimension = PetscMin(kinds[kind].corners - 1, 2);
+  int64_t group = 0, tag;
+
+  if (m->binary && !Skip(m, 1)) return PETSC_FALSE; /* number of the element */
+  for (int64_t i = 0; i < tags; i++) {
+    if (!Integer(m, INT_MIN, INT_MAX, &tag)) return PETSC_FALSE;
+    if (!i) group = tag;
+    if (tag != group && Has(m->groups, dimension, tag))
+      return Wrong(
+          m,
+          "an element of physical group %lld has the tag %lld of another group as that of its entity, and would "
+          "belong to both; write the file with gmsh -format msh41",
+          (long long)group, (long long)tag);
+  }
+  return PETSC_TRUE;
+}
+
 /* Format 2.2: each element (text) or each block of elements (binary) states its type and number of tags. */
 static PetscBool OldElements(Mesh *m, int64_t n)
 {
@@ -394,7 +416,7 @@ static PetscBool OldElements(Mesh *m, int64_t n)
     if (!count || count > n - e) return Wrong(m, "there are not as many elements as $Elements says");
     kind = FindKind(m, type);
     for (int64_t i = 0; kind >= 0 && i < count; i++, e++) {
-      if (!Skip(m, tags + m->binary) || !ElementNodes(m, kind)) return PETSC_FALSE;
+      if (!OldTags(m, kind, tags) || !ElementNodes(m, kind)) return PETSC_FALSE;
     }
     if (kind < 0) return PETSC_FALSE;
   }
@@ -488,7 +510,7 @@ static char *Load(const char path[], size_t *size, char why[LAM_GMSH_WHY])
 
   why[0] = '\0';
   if (!file || fstat(fileno(file), &status)) {
-    snprintf(why, LAM_GMSH_WHY, "%s", strerror(errno));
+    snprintf(why, LAM_GMSH_WHY, "%s; a relative path counts from the folder of the scene", strerror(errno));
   } else if (!S_ISREG(status.st_mode)) {
     snprintf(why, LAM_GMSH_WHY, "is no file");
   } else {
@@ -513,12 +535,14 @@ PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY])
   if (size < 11 || strncmp(bytes, "$MeshFormat", 11)) {
     snprintf(why, LAM_GMSH_WHY, "is no Gmsh mesh: it does not begin with $MeshFormat");
     good = PETSC_FALSE;
-  } else if (PetscHSetIJCreate(&m.entities) || PetscHSetIJCreate(&m.edges) || PetscHSetIJCreate(&m.segments))
+  } else if (PetscHSetIJCreate(&m.groups) || PetscHSetIJCreate(&m.entities) || PetscHSetIJCreate(&m.edges) ||
+             PetscHSetIJCreate(&m.segments))
     good = Wrong(&m, "no memory for the mesh");
   else
     good = Read(&m);
   free(bytes);
   free(m.known);
+  (void)PetscHSetIJDestroy(&m.groups);
   (void)PetscHSetIJDestroy(&m.entities);
   (void)PetscHSetIJDestroy(&m.edges);
   (void)PetscHSetIJDestroy(&m.segments);

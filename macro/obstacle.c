@@ -94,11 +94,11 @@ PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
     const LamBoundary *boundary = &spec->boundary[obstacle->entry];
     obstacle->start = Reach(macro, obstacle, o, u);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &obstacle->start, 1, MPIU_REAL, MPIU_MIN, macro->comm));
-    PetscCheck(obstacle->start < PETSC_INFINITY, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "macro.boundary: on: %s: %s: %s", boundary->on, LamBoundaryKindNames[boundary->kind],
-               boundary->kind == LAM_BOUNDARY_PLATE
-                   ? "all nodes of this side are prescribed, so the plate meets nothing; leave one of them out"
-                   : "its path misses the nodes of this side; move `at`, or take a larger radius or a finer mesh");
+    LamMacroRequire(obstacle->start < PETSC_INFINITY, macro, &boundary->place, "macro.boundary: on: %s: %s: %s",
+                    boundary->on, LamBoundaryKindNames[boundary->kind],
+                    boundary->kind == LAM_BOUNDARY_PLATE
+                        ? "all nodes of this side are prescribed, so the plate meets nothing; leave one of them out"
+                        : "its path misses the nodes of this side; move `at`, or take a larger radius or a finer mesh");
     for (int i = 0; i < 2; i++) obstacle->first[i] = boundary->at[i] + obstacle->start * obstacle->normal[i];
   }
   PetscCall(VecRestoreArrayRead(macro->u, &u));

@@ -178,6 +178,12 @@ LAM_EXPORT PetscInt LamMapQuantityParameter(LamMapQuantity quantity);
 /* True if the quantity is the extent of the load, not a property of the tissue. */
 LAM_EXPORT PetscBool LamMapQuantityIsLoad(LamMapQuantity quantity);
 
+/* Where a value stands in the scene's file, for messages of what only its use shows to be wrong; line 0: the file does
+   not give it. */
+typedef struct {
+  int line, column;
+} LamScenePlace;
+
 /* Source of the macroscale mesh. */
 #define LAM_DISC_PARTS(X)                                                                                              \
   X(LAM_DISC_WHOLE, "whole")                                                                                           \
@@ -213,6 +219,7 @@ typedef struct {
 
 /* A condition on a named side. Prescribed values are multiplied by the history's factor. */
 typedef struct {
+  LamScenePlace place;        /* of `on` */
   char on[LAM_NAME_LENGTH];   /* box: left, right, bottom, top; disc: rim, left, bottom; Gmsh: a physical group */
   char name[LAM_NAME_LENGTH]; /* names the reported force; "": the name of the side */
   LamBoundaryKind kind;
@@ -237,6 +244,7 @@ typedef struct {
 /* Displacement control: the mean of one displacement component over a side is prescribed, and the common factor of
    all tractions is unknown. */
 typedef struct {
+  LamScenePlace place;      /* of `on` */
   char on[LAM_NAME_LENGTH]; /* "": tractions follow their histories */
   PetscInt component;
   PetscReal displacement; /* at load parameter 1 */
@@ -244,9 +252,10 @@ typedef struct {
 
 typedef struct {
   LamMeshSource source;
-  PetscReal box[2];     /* edges, in macro lengths (box[0] = 1) */
-  LamDiscPart disc;     /* part of a disc about the origin; its radius is the macro length */
-  PetscInt elements[2]; /* box: along X1, X2; disc: along an eighth of the rim, and between rim and inner square */
+  LamScenePlace mesh_place; /* of the key that says it */
+  PetscReal box[2];         /* edges, in macro lengths (box[0] = 1) */
+  LamDiscPart disc;         /* part of a disc about the origin; its radius is the macro length */
+  PetscInt elements[2];     /* box: along X1, X2; disc: along an eighth of the rim, and between rim and inner square */
   char gmsh[PETSC_MAX_PATH_LEN]; /* file; its unit of length is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];
@@ -264,6 +273,7 @@ typedef struct {
 /* A part of the body with its own tissue. Where regions overlap the last one applies. */
 typedef struct {
   char name[LAM_NAME_LENGTH]; /* letters, digits, - and _ */
+  LamScenePlace place;        /* of its expression, or of its name where it has none */
   LamPlaceField where;     /* region where the field is nonzero; NULL: the mesh's physical group of this name; owned */
   LamMicrostructure micro; /* with the orientation of the region; owns its cells */
   LamScales scales;        /* the region's apothem and C1 + C2, the units of micro, turgor and cohesion */
@@ -363,7 +373,8 @@ typedef struct {
   char **warnings; /* what is accepted and probably a mistake, in the form of LamSceneRead's messages; owned */
   LamScales scales;
   LamMicrostructure micro;
-  PetscReal turgor;             /* default turgor of a load; in C1 + C2 */
+  PetscReal turgor; /* default turgor of a load; in C1 + C2 */
+  LamScenePlace turgor_place;
   PetscBool sealed;             /* the cells keep the water that they contain at F = I with this turgor, ... */
   PetscReal water_bulk_modulus; /* ... with this bulk modulus, C1 + C2 */
   PetscReal cohesion;           /* as turgor */
@@ -395,6 +406,9 @@ typedef struct {
 LAM_EXPORT PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
 /* True if the property belongs to a wall law that no wall of the scene has. */
 LAM_EXPORT PetscBool LamSceneLacksChanging(const LamScene *scene, LamChanging changing);
+#define LAM_PLACE_TEXT 160
+/* Writes "scene.yaml:12:7", the beginning of a message, to `text`, and returns it. */
+LAM_EXPORT const char *LamScenePlaceText(const LamScene *scene, const LamScenePlace *place, char text[LAM_PLACE_TEXT]);
 /* The factor of a history at a load parameter. */
 LAM_EXPORT PetscReal LamHistoryFactor(const LamHistory *history, PetscReal parameter);
 /* True if two histories have equal factors at all parameters. */

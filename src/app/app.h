@@ -117,6 +117,8 @@ PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource s
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state);
 
+/* A stress in C1 + C2, a force in (C1 + C2) times the macro length, or a share; 0 if it is rounding noise. */
+PetscReal LamWithoutNoise(PetscReal value);
 /* A number in a column of a table, with the notation 'e', 'f' or 'g' of printf; "-" if not known. */
 void LamPrintColumn(int width, int decimals, char notation, PetscReal value);
 

@@ -6,6 +6,21 @@
 #include <stdio.h>
 #include <unistd.h>
 
+/* What a stopped run leaves, and how to go on with it. */
+static void TellHowToGoOn(const LamFE2Run *run)
+{
+  const char *solved = run->database_path ? "; what was solved is in the database" : "";
+
+  if (!run->out_path)
+    fprintf(stderr, "lamella fe2: stopped: without -o OUT.h5 no step is kept%s\n", solved);
+  else if (run->stopped)
+    fprintf(stderr, "lamella fe2: stopped before the first step: %s is not written%s\n", run->out_path, solved);
+  else
+    fprintf(stderr,
+            "lamella fe2: stopped: the same command with --resume goes on behind the last complete step of %s\n",
+            run->out_path);
+}
+
 /* The outcome of rank 0 applies to all ranks: a signal may have reached one rank only. */
 static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, int *exit_status)
 {
@@ -14,6 +29,7 @@ static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, in
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &status, 1, MPI_INT, MPI_MAX, run->comm));
   *exit_status = run->reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
+  if (LamIsFirst(run->comm) && status) TellHowToGoOn(run);
   if (!LamIsFirst(run->comm) || run->stopped) PetscFunctionReturn(0);
   if (!console->json) LamFE2ReportEnd(run);
   if (run->reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, run->message);
@@ -28,6 +44,10 @@ static PetscErrorCode Solve(LamFE2Run *run, LamConsole *console, int *exit_statu
   PetscCall(LamFE2Prepare(run, &finished));
   if (finished) PetscFunctionReturn(0);
   if (!LamFE2CheckTissuePaths("fe2", run, exit_status)) PetscFunctionReturn(0);
+  if (LamIsFirst(run->comm) && run->scene->sealed && run->response == LAM_FE2_DIRECT)
+    LamReportNote(&run->reporter, "sealed cells are solved at each material point, together with their pressure, which "
+                                  "is slow; -d DB.h5 responds from a database of prescribed turgor, which later runs "
+                                  "use again");
   PetscCall(LamFE2Solve(run));
   LamConsoleClear(console);
   PetscCall(Report(run, console, exit_status));

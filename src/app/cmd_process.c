@@ -86,15 +86,16 @@ static void PrintPointRow(const LamProcessStudy *study, const LamProcessState *s
 
   if (study->history.count == 1) PrintPointHeader(study, unit);
   printf("%10.5g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
-  LamPrintColumn(9, 4, 'g', state->turgor * MPa);
-  LamPrintColumn(9, 4, 'g', state->osmotic * MPa);
+  LamPrintColumn(9, 4, 'g', LamWithoutNoise(state->turgor) * MPa);
+  LamPrintColumn(9, 4, 'g', LamWithoutNoise(state->osmotic) * MPa);
   LamPrintColumn(9, 4, 'g', state->factor[LAM_CHANGING_LAMELLA]);
   LamPrintColumn(9, 4, 'g', state->walls);
-  LamPrintColumn(9, 4, 'g', state->firmness * MPa);
+  LamPrintColumn(9, 4, 'g', LamWithoutNoise(state->firmness) * MPa);
   LamPrintColumn(9, 4, 'g', state->F[0]);
   LamPrintColumn(9, 4, 'g', state->F[4]);
-  LamPrintColumn(9, 4, 'g', contact ? r->opening_fraction : r->max_traction * MPa);
-  LamPrintColumn(contact ? 8 : 9, 4, 'g', contact ? r->debonded_fraction : r->max_wall_tension * MPa);
+  LamPrintColumn(9, 4, 'g', LamWithoutNoise(contact ? r->opening_fraction : r->max_traction) * (contact ? 1 : MPa));
+  LamPrintColumn(contact ? 8 : 9, 4, 'g',
+                 LamWithoutNoise(contact ? r->debonded_fraction : r->max_wall_tension) * (contact ? 1 : MPa));
   printf("  %s\n", EventName(state->event));
 }
 
@@ -190,15 +191,15 @@ static void PrintBodyRow(const LamBodyStudy *study, const LamBodyState *state)
 
   if (study->history.count == 1) PrintBodyHeader(study, state, unit);
   printf("%10.6g %8.4g", (double)(state->time / seconds), (double)(state->temperature - 273.15));
-  LamPrintColumn(8, 4, 'g', state->turgor_min * MPa);
-  LamPrintColumn(8, 4, 'g', step->turgor_mean * MPa);
-  LamPrintColumn(8, 4, 'g', state->turgor_max * MPa);
+  LamPrintColumn(8, 4, 'g', LamWithoutNoise(state->turgor_min) * MPa);
+  LamPrintColumn(8, 4, 'g', LamWithoutNoise(step->turgor_mean) * MPa);
+  LamPrintColumn(8, 4, 'g', LamWithoutNoise(state->turgor_max) * MPa);
   LamPrintColumn(7, 4, 'g', state->water);
   LamPrintColumn(7, 4, 'g', state->factor[LAM_CHANGING_LAMELLA]);
   LamPrintColumn(7, 4, 'g', state->walls);
   LamPrintColumn(8, 4, 'g', state->load);
   LamFE2PrintSides(&study->fe2, step, PETSC_FALSE);
-  LamPrintColumn(8, 4, 'g', step->debonded_fraction);
+  LamPrintColumn(8, 4, 'g', LamWithoutNoise(step->debonded_fraction));
   printf("  %s", EventName(state->event));
   if (state->element >= 0)
     printf(" at (%.4g, %.4g) mm", (double)(state->place[0] * mm), (double)(state->place[1] * mm));

@@ -78,7 +78,7 @@ void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool 
       if (names)
         printf(" %9s.%c", step->boundary[s], "xy"[i]);
       else
-        printf(" %11.4e", (double)(step->reaction[s][i] * ForceUnit(run)));
+        printf(" %11.4e", (double)(LamWithoutNoise(step->reaction[s][i]) * ForceUnit(run)));
     }
 }
 
@@ -101,7 +101,7 @@ static void PrintCertified(const LamFE2Run *run, const LamMacroStep *step)
     return;
   }
   for (PetscInt s = 0; s < step->boundary_count; s++)
-    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(step->certified[s][i] * ForceUnit(run)));
+    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(LamWithoutNoise(step->certified[s][i]) * ForceUnit(run)));
   putchar('\n');
 }
 

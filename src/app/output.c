@@ -120,12 +120,11 @@ void LamPrintColumn(int width, int decimals, char notation, PetscReal value)
     printf(" %*s", width, "-");
 }
 
-#define NOISE 1e-12 /* C1 + C2: stresses that rounding leaves where there is none */
+#define NOISE 1e-12 /* what rounding leaves, in C1 + C2, of stresses and forces that are 0 */
 
-/* A stress; 0 if it is rounding noise. */
-static PetscReal WithoutNoise(PetscReal stress)
+PetscReal LamWithoutNoise(PetscReal value)
 {
-  return fabs(stress) < NOISE ? 0 : stress;
+  return fabs(value) < NOISE ? 0 : value;
 }
 
 /* The columns of contact tissue. */
@@ -202,14 +201,14 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   printf("%5" PetscInt_FMT, state);
   for (int k = 0; k < 4; k++) LamPrintColumn(7, 4, 'f', F[in_plane[k]]);
   printf(" %9.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);
-  for (int k = 0; k < 4; k++) LamPrintColumn(10, 3, 'e', WithoutNoise(response->P[in_plane[k]]) * MPa);
+  for (int k = 0; k < 4; k++) LamPrintColumn(10, 3, 'e', LamWithoutNoise(response->P[in_plane[k]]) * MPa);
   LamPrintColumn(6, 4, 'f', response->lumen_fraction);
   LamPrintColumn(10, 3, 'e', response->max_traction * MPa);
   if (interface == LAM_INTERFACE_CONTACT) PrintContact(response, MPa);
   PrintTail(response);
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)
-    printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(WithoutNoise(response->P[8]) * MPa));
+    printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(LamWithoutNoise(response->P[8]) * MPa));
   if (LamResponseHasFields(response) && !HasTurgorOfLoad(response))
     printf("      pressure in the lumens %.4g MPa, spread %.3g MPa\n", (double)(response->turgor_mean * MPa),
            (double)(response->turgor_spread * MPa));

@@ -243,6 +243,7 @@ static PetscErrorCode BuildBoundary(const LamNode *entry, LamScene *scene, Condi
   PetscCall(LamSceneCheckSide(LamNodeFind(entry, "on"), &scene->macro, side));
   PetscCall(ChooseKind(entry, boundary));
   PetscCall(LamSceneFill(entry, &scene->scales, LamBoundary, boundary));
+  boundary->place = LamNodePlace(LamNodeFind(entry, "on"));
   curved = (PetscBool)(*side >= 0 && NormalComponent(&scene->macro, *side) < 0);
   PetscCall(CheckKind(entry, curved, boundary));
   PetscCall(ReadHistory(LamNodeFind(entry, "history"), boundary));

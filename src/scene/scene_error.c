@@ -54,6 +54,16 @@ static void Compose(const LamNode *node, LamMistake mistake, const char key[], c
            path[0] ? ": " : "", shown, shown[0] ? ": " : "", detail);
 }
 
+const char *LamScenePlaceText(const LamScene *scene, const LamScenePlace *place, char text[LAM_PLACE_TEXT])
+{
+  const size_t length = strlen(scene->path);
+  const char *name = scene->path + (length > NAME_SHOWN ? length - NAME_SHOWN : 0);
+  const int used = snprintf(text, LAM_PLACE_TEXT, "%s%s", name == scene->path ? "" : "...", name);
+
+  if (place->line) snprintf(text + used, (size_t)(LAM_PLACE_TEXT - used), ":%d:%d", place->line, place->column);
+  return text;
+}
+
 PetscErrorCode LamSceneRaise(const LamNode *node, LamMistake mistake, const char key[], const char format[], ...)
 {
   char message[MESSAGE_LENGTH];

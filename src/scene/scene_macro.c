@@ -101,6 +101,7 @@ static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
     LamSceneRequire(elements, mesh, "elements", "missing; write two numbers, such as [8, 8]");
     length = source->value;
   }
+  spec->mesh_place = LamNodePlace(LamNodeFind(mesh, sources[spec->source]));
   scene->scales.macro_length = length.number[0];
   PetscCall(LamSceneCheckScale(source, length.number[0]));
   PetscFunctionReturn(0);
@@ -178,6 +179,7 @@ static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
   if (!block) PetscFunctionReturn(0);
   PetscCall(LamSceneCheckSide(LamNodeFind(block, "on"), &scene->macro, &side));
   PetscCall(LamSceneFill(block, &scene->scales, LamLoadControl, control));
+  control->place = LamNodePlace(LamNodeFind(block, "on"));
   is_free = displacement->value.is_free;
   LamSceneCheck(is_free[0] != is_free[1], displacement,
                 "gives %s; give one and write free for the other, such as [free, -1 mm]",

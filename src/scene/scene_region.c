@@ -187,6 +187,7 @@ static PetscErrorCode BuildPlace(const LamNode *entry, const LamScene *scene, La
   for (PetscInt k = 0; k < scene->region_count; k++)
     LamSceneCheck(strcmp(scene->regions[k].name, name->text), name, "another region has this name; give each its own");
   PetscCall(PetscStrncpy(r->name, name->text, sizeof(r->name)));
+  r->place = LamNodePlace(where ? where : name);
   if (where) PetscCall(ReadField(where, &r->where));
   PetscFunctionReturn(0);
 }

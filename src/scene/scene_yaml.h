@@ -61,6 +61,11 @@ LamNode *LamNodeEntry(const LamNode *map, const char name[], size_t length);
 /* The node at a path of keys below `base`, such as "cell.apothem"; NULL: not found. */
 const LamNode *LamNodeFind(const LamNode *base, const char path[]);
 
+static inline LamScenePlace LamNodePlace(const LamNode *node)
+{
+  return (LamScenePlace){node->line, node->column};
+}
+
 /* Raises PETSC_ERR_USER_INPUT with the message "file:line:column: key: value: ...". */
 typedef enum {
   LAM_MISTAKE_VALUE,  /* position and text of the node's value */

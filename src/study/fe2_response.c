@@ -89,7 +89,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   LamFE2Tissues *tissues = &run->tissues;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFE2TissuesCreate(run->comm, run->macro, run->scene, run->database_path, tissues));
+  PetscCall(LamFE2TissuesCreate(run->comm, &run->reporter, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
   /* for the scene's own tissue, as written to the files */
   if (tissues->tissues[0].name[0])

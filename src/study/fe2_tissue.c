@@ -6,6 +6,7 @@
   rounded outwards. Responses of the levels are blended (blend.h). Equal tissues are merged.
 */
 #include "fe2_tissue.h"
+#include "names.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -43,20 +44,53 @@ static PetscErrorCode FindGroup(LamMacro macro, const LamScene *scene, const Lam
   const char(*names)[LAM_NAME_LENGTH];
   PetscInt count;
 
+  char at[LAM_PLACE_TEXT], all[LAM_MESSAGE_LENGTH] = "";
+
   PetscFunctionBeginUser;
   PetscCall(LamMacroGetGroups(macro, &count, &names));
   for (*group = 0; *group < count; ++*group)
     if (!strcmp(names[*group], region->name)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < count; k++) LamNamesAppend(sizeof(all), all, ", ", names[k]);
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
           "%s: macro.regions: %s: the mesh has no group of elements of this name%s%s; write where: with an expression "
           "of x and y in mm",
-          scene->path, region->name, count ? ", but " : "", count ? names[0] : "");
+          LamScenePlaceText(scene, &region->place, at), region->name, count ? ", but " : "", all);
+}
+
+/* Warns of regions without a material point; an error if no region has one. covered: of each region, whether its place
+   has points of this rank, and whether some of them are its own. */
+static PetscErrorCode CheckRegions(MPI_Comm comm, const LamReporter *reporter, const LamScene *scene,
+                                   PetscBool covered[][2])
+{
+  const PetscInt n = scene->region_count;
+  char at[LAM_PLACE_TEXT];
+  PetscInt used = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, covered, 2 * (PetscMPIInt)n, MPIU_BOOL, MPI_LOR, comm));
+  for (PetscInt r = 0; r < n; r++) used += covered[r][1];
+  PetscCheck(used || !n, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: macro.regions: %s: no region has a material point of the body; write expressions of x and y in mm "
+             "that hold in it, or a finer macro.mesh",
+             LamScenePlaceText(scene, &scene->regions[0].place, at), scene->regions[0].name);
+  for (PetscInt r = 0; r < n && LamIsFirst(comm); r++) {
+    if (covered[r][1]) continue;
+    LamReportWarning(reporter, "%s: macro.regions[%d]: %s: %s; %s",
+                     LamScenePlaceText(scene, &scene->regions[r].place, at), (int)r + 1, scene->regions[r].name,
+                     covered[r][0] ? "later regions cover all of it, so its tissue is nowhere"
+                                   : "covers no material point, so its tissue is nowhere",
+                     covered[r][0] ? "write it behind them, or leave it out"
+                                   : "x and y are in mm; write another expression, or a finer macro.mesh");
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Finds the last region that covers each point. X: [n][2] in mm. */
-static PetscErrorCode FindRegions(LamMacro macro, const LamScene *scene, PetscInt n, const PetscReal X[],
-                                  const PetscInt groups[], Place places[])
+static PetscErrorCode FindRegions(MPI_Comm comm, const LamReporter *reporter, LamMacro macro, const LamScene *scene,
+                                  PetscInt n, const PetscReal X[], const PetscInt groups[], Place places[])
 {
+  PetscBool covered[LAM_MAX_REGIONS][2] = {{PETSC_FALSE}};
+
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < n; p++) places[p].region = -1;
   for (PetscInt r = 0; r < scene->region_count; r++) {
@@ -68,9 +102,14 @@ static PetscErrorCode FindRegions(LamMacro macro, const LamScene *scene, PetscIn
       PetscReal inside = groups[p] == group;
 
       if (region->where) PetscCall(LamPlaceFieldEvaluate(region->where, &X[2 * p], &inside));
-      if (inside != 0) places[p].region = r;
+      if (inside == 0) continue;
+      places[p].region = r;
+      covered[r][0] = PETSC_TRUE;
     }
   }
+  for (PetscInt p = 0; p < n; p++)
+    if (places[p].region >= 0) covered[places[p].region][1] = PETSC_TRUE;
+  PetscCall(CheckRegions(comm, reporter, scene, covered));
   PetscFunctionReturn(0);
 }
 
@@ -136,7 +175,8 @@ static PetscErrorCode EvaluateFields(const LamScene *scene, PetscInt n, const Pe
 }
 
 /* Regions and fields at the points of this rank. The caller frees *places. */
-static PetscErrorCode FindPlaces(LamMacro macro, const LamScene *scene, PetscInt n, Place **places)
+static PetscErrorCode FindPlaces(MPI_Comm comm, const LamReporter *reporter, LamMacro macro, const LamScene *scene,
+                                 PetscInt n, Place **places)
 {
   PetscReal *X;
   PetscInt *groups;
@@ -146,7 +186,7 @@ static PetscErrorCode FindPlaces(LamMacro macro, const LamScene *scene, PetscInt
   PetscCall(PetscMalloc2(2 * n, &X, n, &groups));
   PetscCall(LamMacroGetPlaces(macro, X, groups));
   for (PetscInt i = 0; i < 2 * n; i++) X[i] *= scene->scales.macro_length * 1e3;
-  PetscCall(FindRegions(macro, scene, n, X, groups, *places));
+  PetscCall(FindRegions(comm, reporter, macro, scene, n, X, groups, *places));
   PetscCall(EvaluateFields(scene, n, X, *places));
   PetscCall(PetscFree2(X, groups));
   PetscFunctionReturn(0);
@@ -393,8 +433,8 @@ PetscErrorCode LamFE2TissuesCreateOne(MPI_Comm comm, const LamScene *scene, cons
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene *scene, const char database_path[],
-                                   LamFE2Tissues *tissues)
+PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, const LamReporter *reporter, LamMacro macro, const LamScene *scene,
+                                   const char database_path[], LamFE2Tissues *tissues)
 {
   Levels levels[LAM_MAX_REGIONS + 1];
   Place *places;
@@ -406,7 +446,7 @@ PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene
     PetscCall(LamFE2TissuesCreateOne(comm, scene, database_path, tissues->points, tissues));
     PetscFunctionReturn(0);
   }
-  PetscCall(FindPlaces(macro, scene, tissues->points, &places));
+  PetscCall(FindPlaces(comm, reporter, macro, scene, tissues->points, &places));
   PetscCall(AddTissues(comm, scene, places, database_path, tissues, levels));
   PetscCall(PetscMalloc3(tissues->points, &tissues->point, tissues->points, &tissues->turgor, tissues->points,
                          &tissues->cohesion));

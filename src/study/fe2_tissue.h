@@ -46,10 +46,10 @@ typedef struct {
 /*
   Collective. `database_path`: from option -d, or NULL; tissue NAME has the file DB.NAME.h5 beside it. Regions that
   differ only in turgor, cohesion and orientation share a tissue. PETSC_ERR_USER_INPUT if a region or field does not fit
-  the body.
+  the body; a warning of each region that has no material point.
 */
-PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, LamMacro macro, const LamScene *scene, const char database_path[],
-                                   LamFE2Tissues *tissues);
+PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, const LamReporter *reporter, LamMacro macro, const LamScene *scene,
+                                   const char database_path[], LamFE2Tissues *tissues);
 /* The scene's own tissue alone, for `points` points of this rank. */
 PetscErrorCode LamFE2TissuesCreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[], PetscInt points,
                                       LamFE2Tissues *tissues);

@@ -24,7 +24,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
   FuzzEnterFolder();
   FuzzWriteFile("mesh.msh", data, size);
-  code = LamMacroGmshCreate(PETSC_COMM_SELF, "mesh.msh", &dm);
+  code = LamMacroGmshCreate(PETSC_COMM_SELF, "macro.mesh.gmsh", "mesh.msh", &dm);
   FuzzLeaveFolder();
   FuzzCheck(!code || (code == PETSC_ERR_USER_INPUT && FuzzMessage()[0]), "error %d: %s", code, FuzzMessage());
   FuzzCheck(!DMDestroy(&dm), "the mesh cannot be destroyed");
