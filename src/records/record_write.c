@@ -7,6 +7,7 @@
   next commit overwrites those beyond it. A new file is created under another name and renamed at the first commit.
 */
 #include "record_internal.h"
+#include "microstructure_compare.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -35,7 +36,7 @@ static const char *CurrentPath(LamRecordWriter w)
 
 static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[], const LamScene *scene, LamHeader *h)
 {
-  char hash[LAM_HASH_LENGTH], *json;
+  char hash[LAM_HASH_LENGTH], *json, difference[LAM_DIFFERENCE_LENGTH] = "";
 
   PetscFunctionBeginUser;
   PetscCall(LamHeaderRead(path, file, h));
@@ -43,9 +44,9 @@ static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[]
              "%s: is of kind \"%s\", \"%s\" is wanted; give another file name", path, h->kind, kind);
   PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
   PetscCall(PetscFree(json));
+  if (strcmp(h->hash, hash) != 0) PetscCall(LamMicrostructureCompare(&h->micro, &scene->micro, difference));
   PetscCheck(!strcmp(h->hash, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds microstructure %s, the scene %s describes %s; give another file name", path, h->hash,
-             scene->path, hash);
+             "%s: holds other tissue than the scene %s: %s; give another file name", path, scene->path, difference);
   PetscFunctionReturn(0);
 }
 

@@ -3,6 +3,7 @@
 */
 #include "fe2_run.h"
 #include "error_model.h"
+#include "microstructure_compare.h"
 #include "rounding.h"
 #include <stdio.h>
 #include <string.h>
@@ -56,16 +57,19 @@ static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 
 static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
-  char *json, wanted[LAM_HASH_LENGTH];
+  char *json, wanted[LAM_HASH_LENGTH], difference[LAM_DIFFERENCE_LENGTH] = "";
+  LamMicrostructure stored;
   const char *hash;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseGetMicrostructure(tissue->database, NULL, NULL, &hash));
+  PetscCall(LamDatabaseGetMicrostructure(tissue->database, &stored, NULL, &hash));
   PetscCall(LamMicrostructureDescribe(&tissue->scene.micro, &json, wanted));
   PetscCall(PetscFree(json));
+  if (strcmp(hash, wanted) != 0) PetscCall(LamMicrostructureCompare(&stored, &tissue->scene.micro, difference));
   PetscCheck(!strcmp(hash, wanted), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds microstructure %s, the scene %s describes %s%s%s; give a database built from this scene",
-             tissue->database_path, hash, run->scene_path, wanted, tissue->name[0] ? " for " : "", tissue->name);
+             "%s: holds other tissue than the scene %s%s%s: %s; give a database built from this scene, or another name "
+             "for a new one",
+             tissue->database_path, run->scene_path, tissue->name[0] ? " for " : "", tissue->name, difference);
   PetscCall(LamDatabaseGetRecords(tissue->database, &tissue->recorded, NULL, NULL));
   if (!run->archive) tissue->known.first = tissue->recorded;
   PetscFunctionReturn(0);

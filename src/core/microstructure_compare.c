@@ -1,0 +1,107 @@
+/*
+  Compares the canonical descriptions of two microstructures, value by value.
+*/
+#include "microstructure_compare.h"
+#include "names.h"
+#include <jansson.h>
+
+/* Keys of a scene for the names of a description, where they differ; the rest is `rve.` before the name. What counts in
+   a description is a ratio: of lengths to the apothem, of moduli to C1 + C2. */
+static const struct {
+  const char *name, *key;
+  double factor;
+} Keys[] = {
+    {"wall_thickness", "rve.cell.wall_thickness over apothem", 1},
+    {"orientation", "rve.cell.orientation (deg)", 180 / PETSC_PI},
+    {"interface.clearance", "rve.interface.clearance over apothem", 1},
+    {"interface.width", "width of the smooth law (rve.interface.sharpness) over apothem", 1},
+    {"cell", "rve.variation", 1},
+    {"patch", "rve.patch", 1},
+    {"wall.bulk_modulus", "rve.wall.bulk_modulus over C1 + C2", 1},
+};
+
+enum { NAME_LENGTH = 80, VALUE_LENGTH = 40 };
+
+static void KeyOf(const char name[], char key[NAME_LENGTH], double *factor)
+{
+  *factor = 1;
+  snprintf(key, NAME_LENGTH, "rve.%s", name);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(Keys); k++) {
+    if (strcmp(Keys[k].name, name)) continue;
+    snprintf(key, NAME_LENGTH, "%s", Keys[k].key);
+    *factor = Keys[k].factor;
+  }
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) {
+    if (strncmp(name, "wall.", 5) || strcmp(name + 5, LamWallParameterNames[k])) continue;
+    if (LamWallParameterIsModulus(k)) snprintf(key, NAME_LENGTH, "rve.%s over C1 + C2", name);
+  }
+}
+
+static void ValueText(const json_t *value, double factor, char text[VALUE_LENGTH])
+{
+  if (json_is_number(value))
+    snprintf(text, VALUE_LENGTH, "%.6g", factor * json_number_value(value));
+  else if (json_is_string(value))
+    snprintf(text, VALUE_LENGTH, "%s", json_string_value(value));
+  else if (json_array_size(value) == 2 && json_is_integer(json_array_get(value, 0)))
+    snprintf(text, VALUE_LENGTH, "[%d, %d]", (int)json_integer_value(json_array_get(value, 0)),
+             (int)json_integer_value(json_array_get(value, 1)));
+  else
+    snprintf(text, VALUE_LENGTH, value ? "another" : "not given");
+}
+
+/* Appends one difference; what no longer fits is left out. */
+static void Append(const char name[], const json_t *there, const json_t *scene, char text[LAM_DIFFERENCE_LENGTH])
+{
+  char key[NAME_LENGTH], values[2][VALUE_LENGTH], words[NAME_LENGTH + 2 * VALUE_LENGTH + 20];
+  double factor;
+
+  KeyOf(name, key, &factor);
+  ValueText(there, factor, values[0]);
+  ValueText(scene, factor, values[1]);
+  snprintf(words, sizeof(words), "%s is %s, in the scene %s", key, values[0], values[1]);
+  if (strlen(text) + strlen(words) + 3 < LAM_DIFFERENCE_LENGTH)
+    LamNamesAppend(LAM_DIFFERENCE_LENGTH, text, "; ", words);
+}
+
+static void Compare(const char name[], json_t *there, json_t *scene, char text[LAM_DIFFERENCE_LENGTH])
+{
+  char inner[NAME_LENGTH];
+  const char *key;
+  json_t *value;
+
+  if (json_equal(there, scene)) return;
+  if (!json_is_object(there) || !json_is_object(scene)) {
+    Append(name, there, scene, text);
+    return;
+  }
+  json_object_foreach(there, key, value)
+  {
+    snprintf(inner, sizeof(inner), "%s%s%s", name, name[0] ? "." : "", key);
+    Compare(inner, value, json_object_get(scene, key), text);
+  }
+  json_object_foreach(scene, key, value)
+  {
+    snprintf(inner, sizeof(inner), "%s%s%s", name, name[0] ? "." : "", key);
+    if (!json_object_get(there, key)) Compare(inner, NULL, value, text);
+  }
+}
+
+PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *there, const LamMicrostructure *scene,
+                                        char text[LAM_DIFFERENCE_LENGTH])
+{
+  const LamMicrostructure *micro[2] = {there, scene};
+  char *json, hash[LAM_HASH_LENGTH];
+  json_t *root[2];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 2; i++) {
+    PetscCall(LamMicrostructureDescribe(micro[i], &json, hash));
+    root[i] = json_loads(json, 0, NULL);
+    PetscCall(PetscFree(json));
+  }
+  text[0] = '\0';
+  Compare("", root[0], root[1], text);
+  for (int i = 0; i < 2; i++) json_decref(root[i]);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,14 @@
+/*
+  Where two microstructures differ, in the keys of a scene.
+*/
+#ifndef LAM_MICROSTRUCTURE_COMPARE_H
+#define LAM_MICROSTRUCTURE_COMPARE_H
+
+#include <lamella/scene.h>
+
+#define LAM_DIFFERENCE_LENGTH 500
+/* Writes "rve.mesh.along is 6, in the scene 8; ..." to `text`, `there` first; empty: they have the same description. */
+PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *there, const LamMicrostructure *scene,
+                                        char text[LAM_DIFFERENCE_LENGTH]);
+
+#endif
