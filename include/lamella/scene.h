@@ -374,7 +374,7 @@ typedef struct {
   LamScales scales;
   LamMicrostructure micro;
   PetscReal turgor; /* default turgor of a load; in C1 + C2 */
-  LamScenePlace turgor_place;
+  LamScenePlace turgor_place;   /* of rve.turgor.pressure */
   PetscBool sealed;             /* the cells keep the water that they contain at F = I with this turgor, ... */
   PetscReal water_bulk_modulus; /* ... with this bulk modulus, C1 + C2 */
   PetscReal cohesion;           /* as turgor */

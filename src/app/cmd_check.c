@@ -6,6 +6,7 @@
 #include "map.h"
 #include "names.h"
 #include "quantity_text.h"
+#include "turgor_stretch.h"
 #include <math.h>
 
 typedef struct {
@@ -13,8 +14,9 @@ typedef struct {
   LamPlan plan;
   LamPlan *regions; /* [region] of the body; owned */
   LamCost cost;
-  char digits[256];       /* warning of rounding errors; empty: none */
-  const char *why_direct; /* why a process needs direct solves; NULL: a database can be used */
+  char digits[256];             /* warning of rounding errors; empty: none */
+  char turgor[LAM_TURGOR_TEXT]; /* warning of a turgor that the walls do not hold; empty: none */
+  const char *why_direct;       /* why a process needs direct solves; NULL: a database can be used */
 } Check;
 
 static PetscErrorCode Plan(const char path[], Check *check)
@@ -24,6 +26,7 @@ static PetscErrorCode Plan(const char path[], Check *check)
   PetscCall(LamPlanMake(check->scene, &check->plan));
   PetscCall(LamPlanCost(check->scene, &check->plan, &check->cost));
   PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, check->digits, sizeof(check->digits)));
+  PetscCall(LamTurgorWarning(check->scene, check->turgor));
   PetscCall(PetscMalloc1(check->scene->region_count, &check->regions));
   for (PetscInt k = 0; k < check->scene->region_count; k++) {
     LamScene own = *check->scene;
@@ -81,11 +84,13 @@ static json_t *Regions(const Check *check)
   return list;
 }
 
-static json_t *Warnings(const LamScene *scene)
+static json_t *Warnings(const Check *check)
 {
+  const LamScene *scene = check->scene;
   json_t *list = json_array();
 
   for (PetscInt k = 0; k < scene->warning_count; k++) json_array_append_new(list, json_string(scene->warnings[k]));
+  if (check->turgor[0]) json_array_append_new(list, json_string(check->turgor));
   return list;
 }
 
@@ -109,7 +114,7 @@ static PetscErrorCode PrintObject(const Check *check)
   json_object_set_new(o, "rounding", /* a bound of that of the tangent; a warning if it is beyond the accuracy */
                       json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
                                 check->digits[0] ? check->digits : NULL));
-  json_object_set_new(o, "warnings", Warnings(scene));
+  json_object_set_new(o, "warnings", Warnings(check));
   if (micro->is_patch)
     json_object_set_new(o, "patch",
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
@@ -304,6 +309,12 @@ static void PrintCost(const Check *check)
   if (scene->has_macro) PrintMacro(check);
 }
 
+static void PrintWarnings(const Check *check)
+{
+  for (PetscInt k = 0; k < check->scene->warning_count; k++) printf("%-12s %s\n", "warning", check->scene->warnings[k]);
+  if (check->turgor[0]) printf("%-12s %s\n", "warning", check->turgor);
+}
+
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
 {
   PetscBool json = PETSC_FALSE, done;
@@ -326,7 +337,7 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
     PrintModel(&check);
     if (check.digits[0]) printf("%-12s %s\n", "rounding", check.digits);
     PrintCost(&check);
-    for (PetscInt k = 0; k < check.scene->warning_count; k++) printf("%-12s %s\n", "warning", check.scene->warnings[k]);
+    PrintWarnings(&check);
   }
   PetscCall(PetscFree(check.regions));
   PetscCall(LamSceneDestroy(&check.scene));

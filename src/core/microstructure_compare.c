@@ -14,7 +14,7 @@ static const struct {
     {"wall_thickness", "rve.cell.wall_thickness over apothem", 1},
     {"orientation", "rve.cell.orientation (deg)", 180 / PETSC_PI},
     {"interface.clearance", "rve.interface.clearance over apothem", 1},
-    {"interface.width", "width of the smooth law (rve.interface.sharpness) over apothem", 1},
+    {"interface.width", "rve.interface.width over apothem", 1},
     {"cell", "rve.variation", 1},
     {"patch", "rve.patch", 1},
     {"wall.bulk_modulus", "rve.wall.bulk_modulus over C1 + C2", 1},

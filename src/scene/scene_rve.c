@@ -109,6 +109,7 @@ static PetscErrorCode BuildTurgor(const LamNode *root, LamScene *scene)
   LamSceneRequire(pressure || !mode || mode->value.number[0] == LAM_TURGOR_NONE, mode->parent, "pressure",
                   "missing; write a stress with its unit, such as 0.02 MPa, or mode: none");
   if (pressure) PetscCall(LamSceneCheckTurgor(pressure, pressure->value.number[0]));
+  if (pressure) scene->turgor_place = LamNodePlace(pressure);
   PetscFunctionReturn(0);
 }
 

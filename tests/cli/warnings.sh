@@ -62,3 +62,29 @@ water 0.6 >even.yaml
 silent process even.yaml
 water 0.7 '0 m/s/MPa' >closed.yaml
 silent process closed.yaml
+
+# turgor beyond what the walls hold: in the scene, in a load, in a region
+inflated() { # TURGOR
+  tissue turgor="mode: prescribed, pressure: $1" mesh='along: 6, through: 2' <<'YAML'
+load: [{inflate: true}]
+YAML
+}
+inflated '0.4 MPa' >tight.yaml
+warned rve tight.yaml \
+  'tight.yaml:6:40: rve.turgor.pressure: 0.4 MPa: stretches the walls of free tissue by about 84 %; check its unit, and thickness and moduli of the walls'
+# of a wall of 0.15 apothems the corners do not stretch: lumen = (0.85 l + 0.15)^2 - 0.2775
+sed -n 's/.*"lumen_fraction": \([0-9.]*\).*/\1/p' out.txt |
+  awk '{l = (sqrt($1 + 0.2775) - 0.15) / 0.85; exit !(l > 1.84 / 1.06 && l < 1.84 * 1.06)}' || fail "solved tissue stretches otherwise"
+inflated '0.2 MPa' | sed 's/law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa/law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa/' >bursts.yaml
+expect 0 -o '^warning .*rve.turgor.pressure: 0.2 MPa: is more than the walls hold, however far they stretch; check' "$lamella" check bursts.yaml
+inflated '0.02 MPa' | sed 's/inflate: true/inflate: true, turgor: 400 kPa/' >load.yaml
+warned rve load.yaml 'load.yaml: load: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %'
+inflated '0.1 MPa' >firm.yaml
+silent rve firm.yaml
+tissue >region.yaml <<'YAML'
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}]
+  regions: [{name: skin, where: y > 5, turgor: {pressure: 0.4 MPa}}]
+YAML
+expect 0 -o '^warning .*region.yaml:11:33: macro.regions\[1\]: skin: turgor: 0.4 MPa: stretches' "$lamella" check region.yaml
