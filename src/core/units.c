@@ -180,6 +180,18 @@ static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *k
   PetscFunctionReturn(0);
 }
 
+/* The usual unit that differs only by capital letters; NULL: none. */
+static const char *UnitMeant(const char unit[])
+{
+  static const char *const usual[] = {"Pa",    "kPa", "MPa",  "GPa", "um",   "mm",     "nm", "cm",
+                                      "deg",   "rad", "min",  "h",   "day",  "degC",   "K",  "kJ/mol",
+                                      "J/mol", "/s",  "/min", "/h",  "/day", "m/s/MPa"};
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(usual); k++)
+    if (!strcasecmp(usual[k], unit)) return usual[k];
+  return NULL;
+}
+
 /* True if zero is a factor in the unit: udunits2 rejects that, and leaks the memory of the name after it. */
 static PetscBool HasZero(const char unit[])
 {
@@ -219,7 +231,10 @@ static PetscErrorCode QuantityConvert(PetscReal number, const char unit_text[], 
     PetscCall(UnitRead(unit, &parts, &known));
   }
   if (!known) {
-    snprintf(reason, LAM_REASON_LENGTH, "the unit \"%s\" is unknown", unit);
+    const char *meant = UnitMeant(unit);
+
+    snprintf(reason, LAM_REASON_LENGTH, "the unit \"%s\" is unknown%s%s%s", unit, meant ? " (did you mean " : "",
+             meant ? meant : "", meant ? "?)" : "");
   } else if (!parts.plain || memcmp(parts.powers, dimension_powers[expected], sizeof(parts.powers)) ||
              (parts.offset != 0.0 && dimension != LAM_DIMENSION_TEMPERATURE)) {
     snprintf(reason, LAM_REASON_LENGTH, "\"%s\" is not a unit of %s", unit, LamDimensionNames[expected]);

@@ -153,8 +153,8 @@ PetscErrorCode LamLockTake(const char path[], LamLock *lock)
   while (lock->fd < 0) {
     lock->fd = open(lock->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (lock->fd < 0) {
-      PetscCheck(errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot make the lock %s: %s", path,
-                 lock->path, strerror(errno));
+      PetscCheck(errno == EEXIST, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: cannot make the lock %s: %s%s", path,
+                 lock->path, strerror(errno), errno == ENOENT ? "; make the folder first" : "");
       PetscCall(RemoveStale(lock->path, path, &removed));
       continue;
     }

@@ -46,7 +46,8 @@ static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[]
   PetscCall(PetscFree(json));
   if (strcmp(h->hash, hash) != 0) PetscCall(LamMicrostructureCompare(&h->micro, &scene->micro, difference));
   PetscCheck(!strcmp(h->hash, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds other tissue than the scene %s: %s; give another file name", path, scene->path, difference);
+             "%s: holds another microstructure than the scene %s: %s; give another file name", path, scene->path,
+             difference);
   PetscFunctionReturn(0);
 }
 

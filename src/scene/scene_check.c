@@ -46,7 +46,11 @@ static PetscErrorCode FailUnknown(const LamNode *node, const LamKey *map)
     if (!LamKeyIsChild(key, map)) continue;
     used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(key));
   }
-  PetscCall(LamSceneRaise(node, LAM_MISTAKE_NAME, NULL, "unknown key; %sknown here: %s", meant, known));
+  PetscCall(LamSceneRaise(node, LAM_MISTAKE_NAME, NULL, "%s; %sknown here: %s",
+                          node->is_null && strchr("0123456789.-", node->name[0])
+                              ? "is a value without a key; write its key and a colon before it"
+                              : "unknown key",
+                          meant, known));
   PetscFunctionReturn(0);
 }
 

@@ -67,7 +67,8 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscCall(PetscFree(json));
   if (strcmp(hash, wanted) != 0) PetscCall(LamMicrostructureCompare(&stored, &tissue->scene.micro, difference));
   PetscCheck(!strcmp(hash, wanted), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds other tissue than the scene %s%s%s: %s; give a database built from this scene, or another name "
+             "%s: holds another microstructure than the scene %s%s%s: %s; give a database built from this scene, or "
+             "another name "
              "for a new one",
              tissue->database_path, run->scene_path, tissue->name[0] ? " for " : "", tissue->name, difference);
   PetscCall(LamDatabaseGetRecords(tissue->database, &tissue->recorded, NULL, NULL));

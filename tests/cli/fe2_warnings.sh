@@ -51,14 +51,14 @@ told 2 group.yaml '12:20: macro.regions: skin: the mesh has no group of elements
 # a database of other tissue: the keys that differ, with both values
 expect 0 "$lamella" fe2 right.yaml -d part.h5 --json
 sed 's/C4: 1 MPa/C4: 2 MPa/; s/through: 1/through: 2/' right.yaml >other.yaml
-expect 2 -e '^lamella: part.h5: holds other tissue than the scene other.yaml: rve.mesh.through is 1, in the scene 2; rve.wall.C4 over C1 + C2 is 9.09091, in the scene 18.1818; give a database built from this scene' \
+expect 2 -e '^lamella: part.h5: holds another microstructure than the scene other.yaml: rve.mesh.through is 1, in the scene 2; rve.wall.C4 over C1 + C2 is 9.09091, in the scene 18.1818; give a database built from this scene' \
   "$lamella" fe2 other.yaml -d part.h5
 sed 's/thickness: 20 um/thickness: 21 um/' right.yaml >skin.yaml
-expect 2 -e '^lamella: part.skin.h5: holds other tissue than the scene skin.yaml for skin: rve.cell.wall_thickness over apothem is 0.266667, in the scene 0.28; give' \
+expect 2 -e '^lamella: part.skin.h5: holds another microstructure than the scene skin.yaml for skin: rve.cell.wall_thickness over apothem is 0.266667, in the scene 0.28; give' \
   "$lamella" fe2 skin.yaml -d part.h5
 sed '/^macro/,$d; s/bonded/contact/' right.yaml >grown.yaml
 echo 'sample: {stretch: {min: 0, max: 0.1}, count: 7}' >>grown.yaml
-expect 2 -e '^lamella: part.h5: holds other tissue than the scene grown.yaml: rve.interface.law is bonded, in the scene contact; ' \
+expect 2 -e '^lamella: part.h5: holds another microstructure than the scene grown.yaml: rve.interface.law is bonded, in the scene contact; ' \
   "$lamella" build grown.yaml -d part.h5 --resume
 
 # sealed cells without a database: which option helps
