@@ -50,47 +50,54 @@ static void ValueText(const json_t *value, double factor, char text[VALUE_LENGTH
     snprintf(text, VALUE_LENGTH, value ? "another" : "not given");
 }
 
+/* A list of differences. */
+typedef struct {
+  const char *where; /* of the second values */
+  char *text;        /* LAM_DIFFERENCE_LENGTH */
+} List;
+
 /* Appends one difference; what no longer fits is left out. */
-static void Append(const char name[], const json_t *there, const json_t *scene, char text[LAM_DIFFERENCE_LENGTH])
+static void Append(const List *list, const char name[], const json_t *one, const json_t *other)
 {
-  char key[NAME_LENGTH], values[2][VALUE_LENGTH], words[NAME_LENGTH + 2 * VALUE_LENGTH + 20];
+  char key[NAME_LENGTH], values[2][VALUE_LENGTH], words[2 * NAME_LENGTH + 2 * VALUE_LENGTH + 20];
   double factor;
 
   KeyOf(name, key, &factor);
-  ValueText(there, factor, values[0]);
-  ValueText(scene, factor, values[1]);
-  snprintf(words, sizeof(words), "%s is %s, in the scene %s", key, values[0], values[1]);
-  if (strlen(text) + strlen(words) + 3 < LAM_DIFFERENCE_LENGTH)
-    LamNamesAppend(LAM_DIFFERENCE_LENGTH, text, "; ", words);
+  ValueText(one, factor, values[0]);
+  ValueText(other, factor, values[1]);
+  snprintf(words, sizeof(words), "%s is %s, in %.*s %s", key, values[0], NAME_LENGTH, list->where, values[1]);
+  if (strlen(list->text) + strlen(words) + 3 < LAM_DIFFERENCE_LENGTH)
+    LamNamesAppend(LAM_DIFFERENCE_LENGTH, list->text, "; ", words);
 }
 
-static void Compare(const char name[], json_t *there, json_t *scene, char text[LAM_DIFFERENCE_LENGTH])
+static void Compare(const List *list, const char name[], json_t *one, json_t *other)
 {
   char inner[NAME_LENGTH];
   const char *key;
   json_t *value;
 
-  if (json_equal(there, scene)) return;
-  if (!json_is_object(there) || !json_is_object(scene)) {
-    Append(name, there, scene, text);
+  if (json_equal(one, other)) return;
+  if (!json_is_object(one) || !json_is_object(other)) {
+    Append(list, name, one, other);
     return;
   }
-  json_object_foreach(there, key, value)
+  json_object_foreach(one, key, value)
   {
     snprintf(inner, sizeof(inner), "%s%s%s", name, name[0] ? "." : "", key);
-    Compare(inner, value, json_object_get(scene, key), text);
+    Compare(list, inner, value, json_object_get(other, key));
   }
-  json_object_foreach(scene, key, value)
+  json_object_foreach(other, key, value)
   {
     snprintf(inner, sizeof(inner), "%s%s%s", name, name[0] ? "." : "", key);
-    if (!json_object_get(there, key)) Compare(inner, NULL, value, text);
+    if (!json_object_get(one, key)) Compare(list, inner, NULL, value);
   }
 }
 
-PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *there, const LamMicrostructure *scene,
-                                        char text[LAM_DIFFERENCE_LENGTH])
+PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *one, const LamMicrostructure *other,
+                                        const char where[], char text[LAM_DIFFERENCE_LENGTH])
 {
-  const LamMicrostructure *micro[2] = {there, scene};
+  const LamMicrostructure *micro[2] = {one, other};
+  const List list = {where, text};
   char *json, hash[LAM_HASH_LENGTH];
   json_t *root[2];
 
@@ -101,7 +108,7 @@ PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *there, const La
     PetscCall(PetscFree(json));
   }
   text[0] = '\0';
-  Compare("", root[0], root[1], text);
+  Compare(&list, "", root[0], root[1]);
   for (int i = 0; i < 2; i++) json_decref(root[i]);
   PetscFunctionReturn(0);
 }

@@ -7,8 +7,9 @@
 #include <lamella/scene.h>
 
 #define LAM_DIFFERENCE_LENGTH 500
-/* Writes "rve.mesh.along is 6, in the scene 8; ..." to `text`, `there` first; empty: they have the same description. */
-PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *there, const LamMicrostructure *scene,
-                                        char text[LAM_DIFFERENCE_LENGTH]);
+/* Writes "rve.mesh.along is 6, in the scene 8; ..." to `text`, empty where both have the same description. `where`:
+   what holds the other one, "the scene". */
+PetscErrorCode LamMicrostructureCompare(const LamMicrostructure *one, const LamMicrostructure *other,
+                                        const char where[], char text[LAM_DIFFERENCE_LENGTH]);
 
 #endif

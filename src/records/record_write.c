@@ -44,7 +44,8 @@ static PetscErrorCode CheckSame(const char path[], hid_t file, const char kind[]
              "%s: is of kind \"%s\", \"%s\" is wanted; give another file name", path, h->kind, kind);
   PetscCall(LamMicrostructureDescribe(&scene->micro, &json, hash));
   PetscCall(PetscFree(json));
-  if (strcmp(h->hash, hash) != 0) PetscCall(LamMicrostructureCompare(&h->micro, &scene->micro, difference));
+  if (strcmp(h->hash, hash) != 0)
+    PetscCall(LamMicrostructureCompare(&h->micro, &scene->micro, "the scene", difference));
   PetscCheck(!strcmp(h->hash, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: holds another microstructure than the scene %s: %s; give another file name", path, scene->path,
              difference);

@@ -65,7 +65,8 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscCall(LamDatabaseGetMicrostructure(tissue->database, &stored, NULL, &hash));
   PetscCall(LamMicrostructureDescribe(&tissue->scene.micro, &json, wanted));
   PetscCall(PetscFree(json));
-  if (strcmp(hash, wanted) != 0) PetscCall(LamMicrostructureCompare(&stored, &tissue->scene.micro, difference));
+  if (strcmp(hash, wanted) != 0)
+    PetscCall(LamMicrostructureCompare(&stored, &tissue->scene.micro, "the scene", difference));
   PetscCheck(!strcmp(hash, wanted), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: holds another microstructure than the scene %s%s%s: %s; give a database built from this scene, or "
              "another name "

@@ -61,6 +61,9 @@ echo 'sample: {stretch: {min: 0, max: 0.1}, count: 7}' >>grown.yaml
 expect 2 -e '^lamella: part.h5: holds another microstructure than the scene grown.yaml: rve.interface.law is bonded, in the scene contact; ' \
   "$lamella" build grown.yaml -d part.h5 --resume
 
+expect 2 -e '^lamella: part.skin.h5: holds another microstructure than part.h5: rve.cell.wall_thickness over apothem is 0.266667, in part.h5 0.15; only' \
+  "$lamella" merge all.h5 part.h5 part.skin.h5
+
 # sealed cells without a database: which option helps
 body | sed 's/mode: prescribed/mode: sealed/' >sealed.yaml
 expect 0 -e 'sealed cells are solved at each material point.*; -d DB.h5' "$lamella" fe2 sealed.yaml --json

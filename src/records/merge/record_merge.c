@@ -111,7 +111,7 @@ static PetscErrorCode TakeFile(const char path[], hid_t file, void *ctx)
   PetscErrorCode ierr = LamHeaderReadRoot(path, file, m->options->salvage ? &matches : NULL, &header);
 
   PetscFunctionBeginUser;
-  if (!ierr) ierr = LamMergeCheckHash(m, path, header.hash);
+  if (!ierr) ierr = LamMergeCheckHash(m, path, &header);
   if (!ierr) ierr = m->options->salvage ? TakeSound(m, path, file) : TakeCommitted(m, path, file);
   PetscCall(LamHeaderDestroy(&header));
   PetscCall(ierr);

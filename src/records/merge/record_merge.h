@@ -25,6 +25,6 @@ typedef struct {
 void LamMergeMessage(const LamMerge *merge, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 /* Reads the headers of all files, and checks their compatibility. */
 PetscErrorCode LamMergeReadHeaders(LamMerge *merge);
-PetscErrorCode LamMergeCheckHash(const LamMerge *merge, const char path[], const char hash[]);
+PetscErrorCode LamMergeCheckHash(const LamMerge *merge, const char path[], const LamHeader *header);
 
 #endif

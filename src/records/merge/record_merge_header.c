@@ -2,6 +2,7 @@
   The header of a merged database, from the headers of its sources.
 */
 #include "record_merge.h"
+#include "microstructure_compare.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,12 +19,16 @@ void LamMergeMessage(const LamMerge *m, const char format[], ...)
   m->options->tell(m->options->ctx, words);
 }
 
-PetscErrorCode LamMergeCheckHash(const LamMerge *m, const char path[], const char hash[])
+PetscErrorCode LamMergeCheckHash(const LamMerge *m, const char path[], const LamHeader *header)
 {
+  const PetscBool same = (PetscBool)!strcmp(m->hash, header->hash);
+  char difference[LAM_DIFFERENCE_LENGTH] = "";
+
   PetscFunctionBeginUser;
-  PetscCheck(!strcmp(m->hash, hash), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds microstructure %s, %s holds %s; only databases of one microstructure are merged", path, hash,
-             m->header_from, m->hash);
+  if (!same) PetscCall(LamMicrostructureCompare(&header->micro, &m->scene.micro, m->header_from, difference));
+  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds another microstructure than %s: %s; only databases of one microstructure are merged", path,
+             m->header_from, difference);
   PetscFunctionReturn(0);
 }
 
@@ -126,7 +131,7 @@ static PetscErrorCode TakeSource(LamMerge *m, const char path[], Source *s)
         m, "%s: the header is damaged (its checksum differs): apothem %g m, C1 + C2 %g Pa, accuracy %g; check them",
         path, (double)h->scales.length, (double)h->scales.stress, (double)h->accuracy);
   if (m->header_from)
-    PetscCall(LamMergeCheckHash(m, path, h->hash));
+    PetscCall(LamMergeCheckHash(m, path, h));
   else
     PetscCall(TakeFirst(m, path, s));
   if (h->scales.length != m->scene.scales.length || h->scales.stress != m->scene.scales.stress)
