@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sundials/sundials_version.h>
 
+static PetscErrorCode CommandHelp(LamArgs *args, int *exit_status);
+
 static const struct {
   const char *name, *summary;
   LamCommandFunction run;
@@ -23,6 +25,7 @@ static const struct {
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
+    {"help", "what a command does, and its options", CommandHelp, PETSC_FALSE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
@@ -33,7 +36,7 @@ static void PrintHelp(FILE *out)
   fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
                "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
   for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-8s %s\n", Commands[i].name, Commands[i].summary);
-  fprintf(out, "\nlamella COMMAND --help shows more, lamella --version the versions of the libraries.\n");
+  fprintf(out, "\nlamella help COMMAND shows more, lamella --version the versions of the libraries.\n");
 }
 
 static PetscErrorCode PrintVersion(void)
@@ -68,12 +71,6 @@ static void ReportUnknown(const char word[])
   fprintf(stderr, "\nTry 'lamella --help'.\n");
 }
 
-/* Whether the word is the option, short or long. */
-static PetscBool Is(const char word[], const char short_name[], const char long_name[])
-{
-  return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
-}
-
 static PetscErrorCode RunCommand(LamArgs *args, int *status)
 {
   PetscFunctionBeginUser;
@@ -86,6 +83,34 @@ static PetscErrorCode RunCommand(LamArgs *args, int *status)
   ReportUnknown(args->argv[0]);
   *status = LAM_EXIT_USAGE;
   PetscFunctionReturn(0);
+}
+
+/* `help COMMAND` is `COMMAND --help`. */
+static PetscErrorCode CommandHelp(LamArgs *args, int *exit_status)
+{
+  static char help[] = "--help";
+  const LamOption none[] = {{0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL}};
+  const char *command;
+  PetscBool done;
+
+  PetscFunctionBeginUser;
+  if (args->argc == 1) {
+    PrintHelp(stdout);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamOptionsParse(args, "help [COMMAND]", "Shows what a command does, and its options; lists the commands.",
+                            none, 1, &command, &done, exit_status));
+  if (done) PetscFunctionReturn(0);
+  char *argv[] = {(char *)command, help, NULL};
+  LamArgs asked = {.argc = 2, .argv = argv, .start = args->start};
+  PetscCall(RunCommand(&asked, exit_status));
+  PetscFunctionReturn(0);
+}
+
+/* Whether the word is the option, short or long. */
+static PetscBool Is(const char word[], const char short_name[], const char long_name[])
+{
+  return (PetscBool)(!strcmp(word, short_name) || !strcmp(word, long_name));
 }
 
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *status)

@@ -16,10 +16,18 @@ expect 1 "Usage: lamella COMMAND" "$lamella"
 expect 0 "Usage: lamella COMMAND" "$lamella" --help
 [ -s err.txt ] && fail "help goes to stderr"
 cp out.txt help.txt
-for command in check rve build query verify fe2 tradeoff map plot info; do
+expect 0 "Usage: lamella COMMAND" "$lamella" help
+cmp -s out.txt help.txt || fail "help differs from --help"
+expect 1 "did you mean 'query'" "$lamella" help qeury
+expect 1 "one argument too many" "$lamella" help rve fe2
+expect 0 "Usage: lamella help" "$lamella" help help
+for command in check rve build query verify fe2 process tradeoff map plot info; do
   grep -q "^  $command " help.txt || fail "--help does not name $command"
   expect 0 "Usage: lamella $command" "$lamella" $command --help
   [ -s err.txt ] && fail "$command --help goes to stderr"
+  cp out.txt command.txt
+  expect 0 "Usage: lamella $command" "$lamella" help $command
+  cmp -s out.txt command.txt || fail "help $command differs from $command --help"
   expect 1 "lamella $command --help" "$lamella" $command
   expect 1 "lamella $command --help" "$lamella" $command a b
   expect 1 "--no-such-option" "$lamella" $command --no-such-option
