@@ -21,6 +21,10 @@ enum {
   LAM_EXIT_FAULT = 70 /* of the program, or out of memory */
 };
 
+/* What a command says of itself, for shells and the manual. */
+typedef struct LamUsage_s LamUsage;
+typedef void (*LamUsageVisitor)(void *ctx, const LamUsage *usage);
+
 /* The command line of one command: argv[0] is the command's name; arguments after `--` are passed to PETSc. */
 typedef struct LamArgs_s {
   int argc;
@@ -29,6 +33,8 @@ typedef struct LamArgs_s {
   char **petsc_argv;
   /* Starts MPI and PETSc. A command that solves calls it after parsing its command line. */
   PetscErrorCode (*start)(struct LamArgs_s *args);
+  LamUsageVisitor visit; /* not NULL: the command shows its usage to it, and does nothing else */
+  void *ctx;             /* of `visit` */
 } LamArgs;
 
 /* A command: returns an error of the library, or sets the exit status. */
@@ -45,11 +51,14 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandCompletion(LamArgs *args, int *exit_status);
 
 /* ---- program.c ---- */
 /* Finds the command and runs it. argv[0] is the program's name; arguments after `--` are for PETSc alone.
    `start`: of LamArgs. */
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
+/* The usage of each command, in the order of the help. */
+PetscErrorCode LamProgramVisit(LamUsageVisitor visit, void *ctx);
 
 /* ---- runtime.c ---- */
 /* Call first: sets up streams, signals and the handler that stores the message of an error. */
@@ -81,11 +90,17 @@ typedef struct {
   const char *help;
   void *value; /* unchanged where the option is not given */
 } LamOption;
+struct LamUsage_s {
+  const char *command;
+  const char *usage;   /* the line after "Usage: lamella ", or several */
+  const char *summary; /* a sentence */
+  const LamOption *options;
+};
 /*
   Parses options (table ends with long_name NULL) and positional arguments. Their number must be exactly
   `positional_count`, or at least -positional_count if that is negative: `positional` then has room for args->argc of
-  them. `usage` is the line after "Usage: lamella ", `summary` describes the command. *done is set if --help was printed
-  or the usage was wrong (*exit_status differs): the command then returns at once.
+  them. `usage` and `summary` as in LamUsage. *done is set if --help was printed, the usage was wrong (*exit_status
+  differs) or args->visit has been called: the command then returns at once.
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
@@ -139,6 +154,10 @@ PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, Pet
 PetscErrorCode LamTestPrint(const LamTest *test, PetscInt count, const PetscReal strain[], PetscBool json);
 /* Reads numbers between commas, at most LAM_MOST_STRAINS; PETSC_FALSE: the text is something else. */
 PetscBool LamTestReadStrains(const char text[], PetscInt *count, PetscReal strain[LAM_MOST_STRAINS]);
+
+/* ---- cmd_plot.c ---- */
+/* The names that `plot --field` knows, by kind of file: some occur in several. */
+void LamPlotVisitFields(void (*visit)(void *ctx, const char name[]), void *ctx);
 
 /* ---- tradeoff_plot.c ---- */
 /* Draws the diagram; the ending of `path` selects the format. */

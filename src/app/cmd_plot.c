@@ -9,11 +9,21 @@
 static const struct {
   const char *kind;
   PetscErrorCode (*plot)(const LamPlotRequest *request);
-} Plots[] = {{"rve", LamPlotRVE},
-             {"fe2", LamPlotFE2},
-             {"database", LamPlotDatabase},
-             {"map", LamPlotMap},
-             {"process", LamPlotProcess}};
+  const char *(*field)(size_t i); /* NULL beyond the last */
+} Plots[] = {{"rve", LamPlotRVE, LamPlotRVEField},
+             {"fe2", LamPlotFE2, LamPlotFE2Field},
+             {"database", LamPlotDatabase, LamPlotDatabaseField},
+             {"map", LamPlotMap, LamPlotMapField},
+             {"process", LamPlotProcess, LamPlotRVEField}};
+
+void LamPlotVisitFields(void (*visit)(void *ctx, const char name[]), void *ctx)
+{
+  for (size_t p = 0; p < PETSC_STATIC_ARRAY_LENGTH(Plots); p++) {
+    const char *name;
+
+    for (size_t i = 0; (name = Plots[p].field(i)); i++) visit(ctx, name);
+  }
+}
 
 /* Replaces FILE.h5 by FILE.png. */
 static PetscErrorCode DefaultOutput(const char input[], size_t size, char output[])

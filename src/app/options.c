@@ -212,6 +212,9 @@ PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char sum
   Getopt g;
 
   PetscFunctionBeginUser;
+  if (args->visit) args->visit(args->ctx, &(const LamUsage){args->argv[0], usage, summary, options});
+  *done = (PetscBool)(args->visit != NULL);
+  if (*done) PetscFunctionReturn(0);
   PetscCall(Translate(options, &g));
   right = ReadOptions(args, options, &g, &help, exit_status);
   if (right && !help) right = ReadPositional(args, positional_count, positional, exit_status);

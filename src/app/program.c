@@ -25,6 +25,7 @@ static const struct {
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
+    {"completion", "completion of command lines, for bash and zsh", LamCommandCompletion, PETSC_FALSE},
     {"help", "what a command does, and its options", CommandHelp, PETSC_FALSE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
@@ -35,7 +36,7 @@ static void PrintHelp(FILE *out)
 {
   fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
                "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
-  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-8s %s\n", Commands[i].name, Commands[i].summary);
+  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-10s %s\n", Commands[i].name, Commands[i].summary);
   fprintf(out, "\nlamella help COMMAND shows more, lamella --version the versions of the libraries.\n");
 }
 
@@ -94,7 +95,7 @@ static PetscErrorCode CommandHelp(LamArgs *args, int *exit_status)
   PetscBool done;
 
   PetscFunctionBeginUser;
-  if (args->argc == 1) {
+  if (args->argc == 1 && !args->visit) {
     PrintHelp(stdout);
     PetscFunctionReturn(0);
   }
@@ -104,6 +105,19 @@ static PetscErrorCode CommandHelp(LamArgs *args, int *exit_status)
   char *argv[] = {(char *)command, help, NULL};
   LamArgs asked = {.argc = 2, .argv = argv, .start = args->start};
   PetscCall(RunCommand(&asked, exit_status));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProgramVisit(LamUsageVisitor visit, void *ctx)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < COMMAND_COUNT; i++) {
+    char *argv[] = {(char *)Commands[i].name, NULL};
+    LamArgs args = {.argc = 1, .argv = argv, .visit = visit, .ctx = ctx};
+    int status;
+
+    PetscCall(Commands[i].run(&args, &status));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -349,5 +349,10 @@ PetscErrorCode LamPlotFE2(const LamPlotRequest *request);
 PetscErrorCode LamPlotProcess(const LamPlotRequest *request);
 PetscErrorCode LamPlotDatabase(const LamPlotRequest *request);
 PetscErrorCode LamPlotMap(const LamPlotRequest *request);
+/* Name i of a field that such a picture may show (that of a process the fields of RVE states), NULL beyond the last. */
+const char *LamPlotRVEField(size_t i);
+const char *LamPlotFE2Field(size_t i);
+const char *LamPlotDatabaseField(size_t i);
+const char *LamPlotMapField(size_t i);
 
 #endif

@@ -100,6 +100,13 @@ static void Title(const DatabasePicture *p, size_t size, char title[])
   if (p->outside) snprintf(title + n, size - n, ",  %" PetscInt_FMT " without a strain (not drawn)", p->outside);
 }
 
+static const char *const Fields[] = {"stress", "turgor"};
+
+const char *LamPlotDatabaseField(size_t i)
+{
+  return i < PETSC_STATIC_ARRAY_LENGTH(Fields) ? Fields[i] : NULL;
+}
+
 /* The records as points. */
 static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase database)
 {
@@ -109,12 +116,12 @@ static PetscErrorCode PlotRecords(const LamPlotRequest *request, LamDatabase dat
   DatabasePicture picture;
   LamCanvas canvas;
   LamRect rect;
-  const PetscBool turgor = (PetscBool)(request->field && !strcmp(request->field, "turgor"));
+  const PetscBool turgor = (PetscBool)(request->field && !strcmp(request->field, Fields[1]));
   char title[256];
   double width;
 
   PetscFunctionBeginUser;
-  PetscCheck(turgor || !request->field || !strcmp(request->field, "stress"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(turgor || !request->field || !strcmp(request->field, Fields[0]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "--field %s: a database has stress and turgor", request->field);
   PetscCall(LoadDatabase(request, database, turgor, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));

@@ -53,6 +53,11 @@ static const FE2FieldRow FE2Fields[] = {
     SCALAR("interpolated", "share of interpolated responses", NULL),
 };
 
+const char *LamPlotFE2Field(size_t i)
+{
+  return i < PETSC_STATIC_ARRAY_LENGTH(FE2Fields) ? FE2Fields[i].name : NULL;
+}
+
 static const double ZoomHeight = 236, CurveHeight = 150; /* of a page with zooms */
 
 typedef struct {

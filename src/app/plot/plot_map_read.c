@@ -95,11 +95,26 @@ static PetscErrorCode ReadModes(const char path[], LamMapPicture *p)
   PetscFunctionReturn(0);
 }
 
+#define LOAD_FACTOR "load_factor" /* of the points, not of their records */
+
+static PetscBool IsSingleNumber(const LamMember *m)
+{
+  return (PetscBool)(m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT));
+}
+
+const char *LamPlotMapField(size_t i)
+{
+  if (!i) return LOAD_FACTOR;
+  for (const LamMember *m = LamResponseMembers; m->name; m++)
+    if (IsSingleNumber(m) && !--i) return m->name;
+  return NULL;
+}
+
 /* Finds a scalar member of all records by its name in the table of members. */
 static const LamMember *FindMember(const char name[])
 {
   for (const LamMember *m = LamResponseMembers; m->name; m++)
-    if (m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT) && !strcmp(m->name, name)) return m;
+    if (IsSingleNumber(m) && !strcmp(m->name, name)) return m;
   return NULL;
 }
 
@@ -139,10 +154,10 @@ static PetscErrorCode ReadField(const LamPlotRequest *request, LamMapPicture *p)
   const LamMember *member;
 
   PetscFunctionBeginUser;
-  p->field = request->field ? request->field : "load_factor";
+  p->field = request->field ? request->field : LOAD_FACTOR;
   member = FindMember(p->field);
-  PetscCheck(member || !strcmp(p->field, "load_factor"), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "--field %s: a map has load_factor and the single numbers of its records, such as max_wall_tension, "
+  PetscCheck(member || !strcmp(p->field, LOAD_FACTOR), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--field %s: a map has " LOAD_FACTOR " and the single numbers of its records, such as max_wall_tension, "
              "max_traction, open_fraction, max_gap, energy",
              p->field);
   PetscCall(PetscMalloc1(p->n, &p->value));

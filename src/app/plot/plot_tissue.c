@@ -13,6 +13,11 @@ static const LamWallField Fields[] = {
 static const LamColour Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
 static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
 
+const char *LamPlotRVEField(size_t i)
+{
+  return i < PETSC_STATIC_ARRAY_LENGTH(Fields) ? Fields[i].name : NULL;
+}
+
 PetscErrorCode LamWallFieldFind(const char name[], const LamWallField **field)
 {
   PetscFunctionBeginUser;
