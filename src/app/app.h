@@ -11,15 +11,21 @@
 #include "study.h"
 #include "tradeoff.h"
 
-/* Exit statuses (docs/reference/commands.md). */
-enum {
-  LAM_EXIT_OK = 0,
-  LAM_EXIT_USAGE = 1,
-  LAM_EXIT_INPUT = 2,
-  LAM_EXIT_UNSOLVED = 3,
-  LAM_EXIT_IO = 4,
-  LAM_EXIT_FAULT = 70 /* of the program, or out of memory */
-};
+/* Exit statuses, and what the manual says of them. */
+#define LAM_EXITS(X)                                                                                                   \
+  X(LAM_EXIT_OK, 0, "all solved")                                                                                      \
+  X(LAM_EXIT_USAGE, 1, "wrong usage")                                                                                  \
+  X(LAM_EXIT_INPUT, 2, "the scene or an input file is wrong; the message names file, line, column, key and value")     \
+  X(LAM_EXIT_UNSOLVED, 3,                                                                                              \
+    "some states did not converge, are outside a database, or could not be verified; the others are written, the "     \
+    "failed ones with their reason")                                                                                   \
+  X(LAM_EXIT_IO, 4,                                                                                                    \
+    "input or output failed: a file that is missing, locked or cannot be written, a full disk, a closed pipe")         \
+  X(LAM_EXIT_FAULT, 70, "an internal error, with its trace, or no memory left")                                        \
+  X(LAM_EXIT_INTERRUPTED, 130, "stopped by SIGINT")                                                                    \
+  X(LAM_EXIT_TERMINATED, 143, "stopped by SIGTERM or SIGUSR1")
+#define LAM_EXIT_ENTRY(name, status, meaning) name = status,
+enum { LAM_EXITS(LAM_EXIT_ENTRY) };
 
 /* What a command says of itself, for shells and the manual. */
 typedef struct LamUsage_s LamUsage;
@@ -52,8 +58,11 @@ PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandCompletion(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandManual(LamArgs *args, int *exit_status);
 
 /* ---- program.c ---- */
+#define LAM_PROGRAM_USAGE "COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]"
+#define LAM_PROGRAM_SUMMARY "effective stress, tangent and debonding of fruit and plant tissue from its cell walls"
 /* Finds the command and runs it. argv[0] is the program's name; arguments after `--` are for PETSc alone.
    `start`: of LamArgs. */
 PetscErrorCode LamProgramRun(int argc, char *argv[], PetscErrorCode (*start)(LamArgs *args), int *exit_status);
@@ -170,6 +179,6 @@ void LamSummaryPrint(const json_t *summary);
 /* ---- signals.c: SIGINT, SIGTERM, SIGUSR1 request the study to commit and stop (stop.h) ---- */
 PetscErrorCode LamSignalsInstall(void);
 void LamFaultsReport(void);  /* SIGSEGV and SIGBUS print a message before they end the program */
-int LamStopExitStatus(void); /* 130 after SIGINT, 143 after SIGTERM and SIGUSR1, else 0 */
+int LamStopExitStatus(void); /* after a signal; else LAM_EXIT_OK */
 
 #endif

@@ -26,6 +26,7 @@ static const struct {
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
     {"completion", "completion of command lines, for bash and zsh", LamCommandCompletion, PETSC_FALSE},
+    {"manual", "the manual page", LamCommandManual, PETSC_FALSE},
     {"help", "what a command does, and its options", CommandHelp, PETSC_FALSE},
 };
 enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
@@ -34,8 +35,7 @@ enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 
 static void PrintHelp(FILE *out)
 {
-  fprintf(out, "Usage: lamella COMMAND [ARGUMENTS] [-- PETSC-OPTIONS]\n"
-               "Effective stress, tangent and debonding of fruit and plant tissue from its cell walls.\n\n");
+  fprintf(out, "Usage: lamella " LAM_PROGRAM_USAGE "\n" LAM_PROGRAM_SUMMARY "\n\n");
   for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-10s %s\n", Commands[i].name, Commands[i].summary);
   fprintf(out, "\nlamella help COMMAND shows more, lamella --version the versions of the libraries.\n");
 }

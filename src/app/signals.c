@@ -78,5 +78,5 @@ int LamStopExitStatus(void)
 {
   const int number = LamStopSignal();
 
-  return number ? 128 + (number == SIGINT ? SIGINT : SIGTERM) : 0;
+  return !number ? LAM_EXIT_OK : number == SIGINT ? LAM_EXIT_INTERRUPTED : LAM_EXIT_TERMINATED;
 }

@@ -19,7 +19,7 @@ completes() {
 }
 
 completes check ch
-completes "map merge" m
+completes "map merge manual" m
 completes --version --v
 completes "" nonsense --
 completes --certify fe2 --c

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # An installed Lamella is found by pkg-config and by CMake; a program that reads a scene links and runs with both, and with a
-# shared library. Its version is one everywhere.
+# shared library. Its version is one everywhere. Completion, manual, documents and examples come with it.
 set -eu
 lamella=$1
 build=$(dirname "$lamella")
@@ -50,3 +50,19 @@ done
 version=$(pkg-config --modversion lamella)
 [ "$("$dir/shared")" = "$version $version" ] || { echo "FAILED: $("$dir/shared"), but pkg-config says $version"; exit 1; }
 "$dir/usr/bin/lamella" --version | grep -q "^lamella $version" || { echo "FAILED: the installed program does not run"; exit 1; }
+
+share=$dir/usr/share
+for shell in bash zsh; do "$dir/usr/bin/lamella" completion $shell >"$dir/$shell"; done
+"$dir/usr/bin/lamella" manual >"$dir/manual"
+cmp "$dir/bash" "$share/bash-completion/completions/lamella"
+cmp "$dir/zsh" "$share/zsh/site-functions/_lamella"
+cmp "$dir/manual" "$share/man/man1/lamella.1"
+diff -r "$2/docs" "$share/doc/lamella/docs"
+"$dir/usr/bin/lamella" check "$share/doc/lamella/tests/scenes/shear-bonded.yaml" >/dev/null
+# what the installed documents refer to has come, too
+while IFS= read -r document; do
+  while IFS= read -r link; do
+    [ -e "$(dirname "$document")/$link" ] || { echo "FAILED: $document refers to $link, which is not installed"; exit 1; }
+  done < <(sed 's/^    .*//' "$document" | grep -oE '\]\([^)# ]+' | cut -c3- | grep -v :)
+done < <(find "$share/doc/lamella" -name '*.md')
+cmake -S "$share/doc/lamella/examples" -B "$dir/examples" -DCMAKE_PREFIX_PATH="$dir/usr" >"$dir/cmake.log" 2>&1 || { cat "$dir/cmake.log"; exit 1; }
