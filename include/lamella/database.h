@@ -13,6 +13,7 @@
 #include <petscsys.h>
 #include <lamella/scene.h>
 #include <lamella/response.h>
+#include <lamella/reporter.h>
 #include <lamella/export.h>
 
 LAM_C_BEGIN
@@ -106,12 +107,12 @@ LAM_EXPORT PetscErrorCode LamFileReadInts(const char path[], const char name[], 
                                           PetscInt dims[4], PetscInt **values);
 LAM_EXPORT PetscErrorCode LamFileReadText(const char path[], const char name[], PetscBool *found, char **text);
 /*
-  Checks all of a file, continuing past damage. `json`, freed by the caller: file, sound, records (committed; null if
-  the counter is damaged), sound_records (null if none can be examined), damaged (a list: record, key and reason, or
-  part and reason), unchecked (parts without a checksum), writer (host, process, since; or null). Returns an error
-  only if the file does not exist or is not readable.
+  Checks all of a file, continuing past damage. `reporter`, or NULL, gets the progress in records. `json`, freed by the
+  caller: file, sound, records (committed; null if the counter is damaged), sound_records (null if none can be
+  examined), damaged (a list: record, key and reason, or part and reason), unchecked (parts without a checksum), writer
+  (host, process, since; or null). Returns an error only if the file does not exist or is not readable.
 */
-LAM_EXPORT PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json);
+LAM_EXPORT PetscErrorCode LamFileCheck(const char path[], const LamReporter *reporter, PetscBool *sound, char **json);
 /* The file's kind: "rve", "database", "fe2" or "map". */
 LAM_EXPORT PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH]);
 
@@ -120,9 +121,7 @@ LAM_EXPORT PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_
 typedef struct {
   PetscBool salvage;       /* use the records with a correct checksum from damaged files */
   PetscBool (*stop)(void); /* called periodically; PETSC_TRUE cancels the merge; NULL: never */
-  /* Receives messages for the user, one sentence per call; may be NULL. */
-  void (*tell)(void *ctx, const char words[]);
-  void *ctx; /* of tell; borrowed */
+  LamReporter reporter;    /* one sentence per message; progress in records */
 } LamMergeOptions;
 
 typedef struct {

@@ -20,6 +20,7 @@
     body.h                 a body whose tissue changes in time
     study.h                whole studies: build a database, solve a body
     material.h             a material law for other programs, in SI units
+    reporter.h             what a long task reports while it runs
     error.h                the last error as text
     archive.h              checkpoints
     version.h              LAMELLA_VERSION and its numbers

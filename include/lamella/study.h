@@ -9,18 +9,10 @@
 #define LAMELLA_STUDY_H
 
 #include <lamella/body.h>
+#include <lamella/reporter.h>
 #include <lamella/export.h>
 
 LAM_C_BEGIN
-
-/* Receives reports of a running study, on rank 0. The reporter and its members may be NULL. */
-typedef struct {
-  void *ctx; /* of both; borrowed */
-  /* A message for the user. warning: results may be unreliable; otherwise it is a note. */
-  void (*message)(void *ctx, PetscBool warning, const char text[]);
-  /* failed: included in done; total 0: not known yet. */
-  PetscErrorCode (*progress)(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed);
-} LamReporter;
 
 /* Requests that the running study commits its results and returns; `number`: the signal that is the reason, SIGTERM
    if there is none. May be called in a signal handler. */

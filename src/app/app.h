@@ -120,10 +120,10 @@ PetscBool LamUsageError(const char command[], int *exit_status, const char forma
 typedef struct {
   const char *command; /* "build" */
   PetscBool json, quiet;
-  PetscBool has_rows; /* the rows of a table on the terminal already show the progress: no bar */
-  PetscBool warned;   /* of localisation, once */
-  PetscReal start, drawn;
-  PetscInt64 first; /* done at the first update */
+  PetscBool has_rows;     /* the rows of a table on the terminal already show the progress: no bar */
+  PetscBool warned;       /* of localisation, once */
+  PetscReal start, drawn; /* of the first update, of the bar on the screen; 0: none */
+  PetscInt64 first;       /* done at the first update */
 } LamConsole;
 LamReporter LamConsoleReporter(LamConsole *console); /* borrows it */
 void LamConsoleClear(LamConsole *console);           /* removes the bar */

@@ -292,18 +292,20 @@ static void PrintCheck(const char path[], const json_t *check)
   printf("%-20s lamella build SCENE -d NEW.h5 --resume solves the others again\n", "");
 }
 
-static PetscErrorCode CheckFile(const char path[], PetscBool as_json, int *exit_status)
+static PetscErrorCode CheckFile(const char path[], LamConsole *console, int *exit_status)
 {
+  const LamReporter reporter = LamConsoleReporter(console);
   PetscBool sound;
   json_t *check;
   char *text;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileCheck(path, &sound, &text));
+  PetscCall(LamFileCheck(path, &reporter, &sound, &text));
+  LamConsoleClear(console);
   check = json_loads(text, 0, NULL);
   PetscCall(PetscFree(text));
   PetscCheck(check, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: what is damaged is no JSON", path);
-  if (as_json) {
+  if (console->json) {
     PetscCall(LamPrintJSON(check));
   } else {
     PrintCheck(path, check);
@@ -349,24 +351,26 @@ static PetscErrorCode Describe(const char path[], PetscBool as_json)
 
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status)
 {
-  PetscBool json = PETSC_FALSE, check = PETSC_FALSE, done;
+  LamConsole console = {.command = "info"};
+  PetscBool check = PETSC_FALSE, done;
   const char *path;
   const LamOption options[] = {
       {0, "check", LAM_OPTION_FLAG, NULL, "read all of it, name what is damaged; exit status 2 where anything is",
        &check},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "info FILE.h5 [--check] [--json]",
+  PetscCall(LamOptionsParse(args, "info FILE.h5 [--check] [--json] [--quiet]",
                             "Shows what a file holds, who wrote it, with what; or what of it is sound.", options, 1,
                             &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   *exit_status = LAM_EXIT_OK;
   if (check)
-    PetscCall(CheckFile(path, json, exit_status));
+    PetscCall(CheckFile(path, &console, exit_status));
   else
-    PetscCall(Describe(path, json));
+    PetscCall(Describe(path, console.json));
   PetscFunctionReturn(0);
 }

@@ -6,16 +6,11 @@
 #include "clock.h"
 
 typedef struct {
-  PetscBool json, salvage, quiet;
+  LamConsole console;
+  PetscBool salvage;
   const char *out, *const *files;
   PetscInt n;
 } Merge;
-
-static void ReportToUser(void *ctx, const char words[])
-{
-  (void)ctx;
-  fprintf(stderr, "lamella merge: %s\n", words);
-}
 
 static PetscErrorCode PrintObject(const Merge *m, const LamMergeReport *report, PetscReal seconds)
 {
@@ -41,10 +36,10 @@ static void PrintTable(const Merge *m, const LamMergeReport *report, PetscReal s
   printf("%-16s %.3g s\n", "time", seconds);
 }
 
-static PetscErrorCode Run(const Merge *m, int *exit_status)
+static PetscErrorCode Run(Merge *m, int *exit_status)
 {
   const LamMergeOptions options = {
-      .salvage = m->salvage, .stop = LamStopRequested, .tell = m->quiet ? NULL : ReportToUser};
+      .salvage = m->salvage, .stop = LamStopRequested, .reporter = LamConsoleReporter(&m->console)};
   PetscReal start, end;
   LamMergeReport report;
 
@@ -52,14 +47,15 @@ static PetscErrorCode Run(const Merge *m, int *exit_status)
   start = LamClock();
   PetscCall(LamDatabaseMerge(m->out, m->n, m->files, &options, &report));
   end = LamClock();
+  LamConsoleClear(&m->console);
   *exit_status = report.stopped ? LamStopExitStatus() : LAM_EXIT_OK;
   if (report.stopped) PetscFunctionReturn(0);
-  if (report.differing && !m->quiet)
+  if (report.differing && !m->console.quiet)
     fprintf(stderr,
             "lamella merge: %lld records have been solved twice, with different numbers; of each the first was kept, "
             "or the one that converged\n",
             (long long)report.differing);
-  if (m->json)
+  if (m->console.json)
     PetscCall(PrintObject(m, &report, end - start));
   else
     PrintTable(m, &report, end - start);
@@ -69,12 +65,12 @@ static PetscErrorCode Run(const Merge *m, int *exit_status)
 PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status)
 {
   const char **names;
-  Merge m = {0};
+  Merge m = {.console.command = "merge"};
   PetscBool done;
   const LamOption options[] = {
       {0, "salvage", LAM_OPTION_FLAG, NULL, "take the sound records of damaged files", &m.salvage},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &m.json},
-      {0, "quiet", LAM_OPTION_FLAG, NULL, "no messages but errors", &m.quiet},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &m.console.json},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress and no messages but errors", &m.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 

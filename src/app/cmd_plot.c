@@ -40,7 +40,8 @@ static PetscErrorCode DefaultOutput(const char input[], size_t size, char output
 
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
 {
-  LamPlotRequest request = {.state = -1};
+  LamConsole console = {.command = "plot"};
+  LamPlotRequest request = {.state = -1, .reporter = LamConsoleReporter(&console)};
   const char *input;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &request.output},
@@ -60,16 +61,17 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
        &request.turgor},
       {0, "accuracy", LAM_OPTION_ACCURACY, "SHARE", "slice: the error that is asked for (default: that of the file)",
        &request.accuracy},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL}};
   char kind[LAM_NAME_LENGTH], name[PETSC_MAX_PATH_LEN];
   PetscBool done;
 
   PetscFunctionBeginUser;
-  PetscCall(
-      LamOptionsParse(args,
-                      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME] [--film] [--map MAP.h5]\n"
-                      "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE]",
-                      "Draws what the file holds.", options, 1, &input, &done, exit_status));
+  PetscCall(LamOptionsParse(
+      args,
+      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME] [--film] [--map MAP.h5]\n"
+      "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE] [--quiet]",
+      "Draws what the file holds.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!request.output) {
     PetscCall(DefaultOutput(input, sizeof name, name));
@@ -84,6 +86,7 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {
     if (strcmp(kind, Plots[i].kind)) continue;
     PetscCall(Plots[i].plot(&request));
+    LamConsoleClear(&console);
     printf("wrote %s\n", request.output);
     *exit_status = LAM_EXIT_OK;
     PetscFunctionReturn(0);

@@ -7,10 +7,12 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct {
   const char *deformation, *turgor, *cohesion;
-  PetscBool json, tangent;
+  PetscBool tangent;
+  LamConsole console;
   LamQuerySource from;
   PetscReal accuracy; /* 0: the scene's */
   LamLoad defaults;   /* turgor and cohesion of queries that do not give them */
@@ -35,7 +37,7 @@ static PetscErrorCode Respond(Query *q, const LamLoad *load)
     q->answered++;
   else
     q->refused++;
-  if (!q->json) {
+  if (!q->console.json) {
     PetscCall(LamPrintResponseRow(&response, &q->from.scales, q->from.micro.interface, state));
     PetscFunctionReturn(0);
   }
@@ -61,12 +63,17 @@ static PetscErrorCode QueryLine(Query *q, PetscInt number, char line[])
 
 static PetscErrorCode QueryInput(Query *q)
 {
+  const LamReporter reporter = LamConsoleReporter(&q->console);
   PetscErrorCode ierr = 0;
   size_t capacity = 0;
   char *line = NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt number = 1; !ierr && getline(&line, &capacity, stdin) >= 0; number++) ierr = QueryLine(q, number, line);
+  for (PetscInt number = 1; !ierr && getline(&line, &capacity, stdin) >= 0; number++) {
+    ierr = QueryLine(q, number, line);
+    if (!ierr) ierr = reporter.progress(reporter.ctx, q->answered + q->refused, 0, 0);
+  }
+  LamConsoleClear(&q->console);
   free(line);
   PetscCall(ierr);
   PetscCheck(!ferror(stdin), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "standard input: %s", strerror(errno));
@@ -121,19 +128,19 @@ static PetscErrorCode Run(Query *q, int *exit_status)
 
   PetscFunctionBeginUser;
   if (!ReadValues(q, &load, exit_status)) PetscFunctionReturn(0);
-  if (!q->json) PetscCall(LamPrintResponseHeader(q->from.micro.interface, LAM_SOURCE_DATABASE));
+  if (!q->console.json) PetscCall(LamPrintResponseHeader(q->from.micro.interface, LAM_SOURCE_DATABASE));
   if (strcmp(q->deformation, "-"))
     PetscCall(Respond(q, &load));
   else
     PetscCall(QueryInput(q));
-  if (!q->json) PrintDefaults(q);
+  if (!q->console.json) PrintDefaults(q);
   *exit_status = q->refused ? LAM_EXIT_UNSOLVED : LAM_EXIT_OK;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
 {
-  Query q = {0};
+  Query q = {.console = {.command = "query", .has_rows = (PetscBool)isatty(STDOUT_FILENO)}};
   PetscBool done;
   const char *path;
   const LamOption options[] = {
@@ -147,15 +154,16 @@ PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
       {0, "accuracy", LAM_OPTION_ACCURACY, "ERROR",
        "relative error of P that a response may have by its estimate, 0.01; inf: any; by default the scene's",
        &q.accuracy},
-      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per response on stdout", &q.json},
+      {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per response on stdout", &q.console.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the 81 numbers of the tangent too (with --json)", &q.tangent},
+      {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &q.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args,
                             "query DB.h5 -F \"1 0.1 0 1\" [-p \"0.02 MPa\"] [-g \"0.001 MPa\"] [--accuracy ERROR] "
-                            "[--json] [--tangent]",
+                            "[--json] [--tangent] [--quiet]",
                             "Responds from a database; never solves.", options, 1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!q.deformation &&

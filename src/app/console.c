@@ -7,6 +7,7 @@
 
 enum { BAR_WIDTH = 24 };
 #define REDRAW_SECONDS 0.1
+#define ERASE "\r\033[K" /* the line of the bar */
 
 static void PrintDuration(PetscReal seconds)
 {
@@ -22,7 +23,18 @@ static void PrintMessage(void *ctx, PetscBool warning, const char text[])
 {
   const LamConsole *console = (const LamConsole *)ctx;
 
-  if (warning || !console->quiet) fprintf(stderr, "lamella %s: %s\n", console->command, text);
+  if (!warning && console->quiet) return;
+  if (console->drawn) fputs(ERASE, stderr); /* the next update draws the bar again */
+  fprintf(stderr, "lamella %s: %s\n", console->command, text);
+}
+
+static void PrintBar(PetscInt64 done, PetscInt64 total)
+{
+  const int filled = (int)(BAR_WIDTH * PetscMin(done, total) / total);
+
+  fputc('[', stderr);
+  for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
+  fputs("] ", stderr);
 }
 
 /* Message and progress functions of a LamReporter; work done by an earlier run does not count for the rate. */
@@ -31,23 +43,23 @@ static PetscErrorCode UpdateBar(void *ctx, PetscInt64 done, PetscInt64 total, Pe
   LamConsole *console = (LamConsole *)ctx;
   const PetscReal now = LamClock();
   PetscReal rate;
-  int filled;
 
   PetscFunctionBeginUser;
   if (console->quiet || console->has_rows || !LamAppIsRoot() || !isatty(STDERR_FILENO)) PetscFunctionReturn(0);
-  if (console->drawn && done < total && now - console->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
+  if (console->drawn && (done < total || !total) && now - console->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
   if (!console->drawn) {
     console->start = now;
     console->first = done;
   }
   console->drawn = now;
-  filled = total > 0 ? (int)(BAR_WIDTH * PetscMin(done, total) / total) : BAR_WIDTH;
-  fputs("\r\033[K[", stderr);
-  for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
-  fprintf(stderr, "] %lld/%lld", (long long)done, (long long)total);
+  fputs(ERASE, stderr);
+  if (total > 0) PrintBar(done, total);
+  fprintf(stderr, "%lld", (long long)done);
+  if (total > 0) fprintf(stderr, "/%lld", (long long)total);
   rate = now > console->start ? (PetscReal)(done - console->first) / (now - console->start) : 0;
-  if (rate > 0) {
-    fprintf(stderr, "  %.3g/s  ", rate);
+  if (rate > 0) fprintf(stderr, "  %.3g/s", rate);
+  if (rate > 0 && total > 0) {
+    fputs("  ", stderr);
     PrintDuration((PetscReal)(total - done) / rate);
     fputs(" left", stderr);
   }
@@ -62,7 +74,7 @@ LamReporter LamConsoleReporter(LamConsole *console)
 
 void LamConsoleClear(LamConsole *console)
 {
-  if (console->drawn) fputs("\r\033[K", stderr);
+  if (console->drawn) fputs(ERASE, stderr);
   console->drawn = 0;
 }
 

@@ -13,6 +13,7 @@
 
 typedef struct {
   const char *path;
+  const LamReporter *reporter; /* borrowed; NULL: none */
   hid_t file;
   LamHeader header;
   json_t *damaged, *unchecked; /* arrays, owned */
@@ -20,6 +21,7 @@ typedef struct {
   PetscBool scanned;           /* the records could be examined */
   PetscBool has_nodes;
   PetscInt sound_records;
+  PetscInt total;   /* of records to be read */
   uint32_t sum;     /* of the checksums of the records */
   char words[1024]; /* message of the last error */
 } Check;
@@ -86,6 +88,8 @@ static PetscErrorCode CheckRecord(void *ctx, const LamRecordLayout *layout, Pets
   Check *c = ctx;
 
   PetscFunctionBeginUser;
+  if (c->reporter && number % LAM_RECORDS_PER_REPORT == 0)
+    PetscCall(c->reporter->progress(c->reporter->ctx, number, c->total, 0));
   if (damage && c->counted) AddRecord(c, layout, number, bytes, damage);
   if (damage) PetscFunctionReturn(0);
   c->sound_records++;
@@ -101,7 +105,7 @@ static PetscErrorCode CheckRecords(Check *c)
 
   PetscFunctionBeginUser;
   PetscCall(LamRecordScanOpen(c->path, c->file, &scan));
-  count = c->counted ? c->header.committed : LamRecordScanExtent(&scan, c->file);
+  count = c->total = c->counted ? c->header.committed : LamRecordScanExtent(&scan, c->file);
   PetscCall(LamRecordScanAll(c->path, &scan, count, CheckRecord, c));
   if (c->counted && c->sound_records == count)
     (void)Sound(c, "order of the records", LamRecordScanEnd(c->path, &scan, count, c->sum));
@@ -206,9 +210,13 @@ static PetscErrorCode OpenAndCheck(Check *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFileCheck(const char path[], PetscBool *sound, char **json)
+PetscErrorCode LamFileCheck(const char path[], const LamReporter *reporter, PetscBool *sound, char **json)
 {
-  Check c = {.path = path, .file = H5I_INVALID_HID, .damaged = json_array(), .unchecked = json_array()};
+  Check c = {.path = path,
+             .reporter = reporter && reporter->progress ? reporter : NULL,
+             .file = H5I_INVALID_HID,
+             .damaged = json_array(),
+             .unchecked = json_array()};
   PetscErrorCode ierr = OpenAndCheck(&c);
   json_t *object;
   char *text;

@@ -11,7 +11,8 @@
 
 #define LAM_FORMAT_NAME "lamella"
 #define LAM_FORMAT_VERSION 1
-#define LAM_RECORDS_PER_CHUNK 64 /* about 90 kB: a commit writes one or two chunks */
+#define LAM_RECORDS_PER_CHUNK 64    /* about 90 kB: a commit writes one or two chunks */
+#define LAM_RECORDS_PER_REPORT 4096 /* between reports of progress: a tenth of a second of a merge */
 
 /* Advice for a damaged file, at the end of a message. */
 #define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps the sound records of a database"

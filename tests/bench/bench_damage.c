@@ -115,7 +115,7 @@ static PetscErrorCode Inspect(PetscBool *sound)
   char *json;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileCheck(path, sound, &json));
+  PetscCall(LamFileCheck(path, NULL, sound, &json));
   PetscCall(PetscFree(json));
   PetscFunctionReturn(0);
 }

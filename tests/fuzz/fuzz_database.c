@@ -56,7 +56,7 @@ static PetscErrorCode Check(void)
   char *text;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFileCheck(FILE_NAME, &sound, &text));
+  PetscCall(LamFileCheck(FILE_NAME, NULL, &sound, &text));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }

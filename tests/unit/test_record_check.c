@@ -9,7 +9,7 @@ static json_t *Check(void)
   json_t *check;
   char *text;
 
-  assert_int_equal(LamFileCheck(path, &sound, &text), 0);
+  assert_int_equal(LamFileCheck(path, NULL, &sound, &text), 0);
   check = json_loads(text, 0, NULL);
   assert_non_null(check);
   assert_int_equal(sound, json_is_true(json_object_get(check, "sound")));
@@ -174,6 +174,6 @@ FILE_TEST(a_missing_file_is_an_error)
   PetscBool sound;
   char *text;
 
-  assert_int_equal(LamFileCheck(path, &sound, &text), PETSC_ERR_FILE_OPEN);
+  assert_int_equal(LamFileCheck(path, NULL, &sound, &text), PETSC_ERR_FILE_OPEN);
   AssertMessage("No such file");
 }

@@ -6,7 +6,7 @@ enum { COUNT = 200 }; /* more than three chunks */
 static PetscInt64 keys[COUNT];
 static char told[8192]; /* what the merges of a test have told */
 
-static void Listen(void *ctx, const char words[])
+static void Listen(void *ctx, PetscBool warning, const char words[])
 {
   const size_t length = strlen(told);
 
@@ -22,7 +22,7 @@ static void WriteSound(int shard)
 
 static PetscErrorCode SalvageShards(PetscInt n)
 {
-  const LamMergeOptions options = {.salvage = PETSC_TRUE, .tell = Listen};
+  const LamMergeOptions options = {.salvage = PETSC_TRUE, .reporter.message = Listen};
   const char *files[SHARDS] = {shard_path[0], shard_path[1], shard_path[2]};
 
   return LamDatabaseMerge(path, n, files, &options, &report);

@@ -343,6 +343,7 @@ typedef struct {
   /* of a slice through a table, as given by the user; NULL, 0: chosen */
   const char *angle, *suction, *turgor;
   PetscReal accuracy;
+  LamReporter reporter; /* progress of a film, in frames */
 } LamPlotRequest;
 PetscErrorCode LamPlotRVE(const LamPlotRequest *request);
 PetscErrorCode LamPlotFE2(const LamPlotRequest *request);

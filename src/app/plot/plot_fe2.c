@@ -403,7 +403,7 @@ static PetscErrorCode DrawProcess(const LamPlotRequest *request, FE2Picture *p)
 
   PetscFunctionBeginUser;
   PetscCall(FindFrame(count, &film));
-  PetscCall(LamFilmDraw(request->output, count, DrawMoment, &film));
+  PetscCall(LamFilmDraw(request, count, DrawMoment, &film));
   PetscFunctionReturn(0);
 }
 

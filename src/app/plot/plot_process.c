@@ -218,7 +218,7 @@ static PetscErrorCode PlotFilm(const LamPlotRequest *request, Process *p)
   PetscCall(LamWallFieldFind(request->field, &film.field));
   PetscCall(FindStates(request, &film));
   PetscCall(FindFrame(&film));
-  PetscCall(LamFilmDraw(request->output, film.count, DrawFrame, &film));
+  PetscCall(LamFilmDraw(request, film.count, DrawFrame, &film));
   PetscCall(PetscFree(film.states));
   PetscFunctionReturn(0);
 }

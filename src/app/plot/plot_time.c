@@ -193,8 +193,10 @@ void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, co
   LamColourBar(canvas, picture, &frame->range, LamColourMap, frame->label, frame->unit);
 }
 
-PetscErrorCode LamFilmDraw(const char path[], PetscInt count, LamFrameFunction draw, void *ctx)
+PetscErrorCode LamFilmDraw(const LamPlotRequest *request, PetscInt count, LamFrameFunction draw, void *ctx)
 {
+  const LamReporter *reporter = &request->reporter;
+  const char *path = request->output;
   const PetscBool pages = LamCanvasHasPages(path);
   const char *dot = strrchr(path, '.');
   char name[PETSC_MAX_PATH_LEN];
@@ -211,6 +213,7 @@ PetscErrorCode LamFilmDraw(const char path[], PetscInt count, LamFrameFunction d
       PetscCall(LamCanvasCreate(name, LAM_PLOT_WIDTH, LAM_TIME_HEIGHT, &canvas));
     PetscCall(draw(canvas, ctx, k));
     if (!pages || k == count - 1) PetscCall(LamCanvasFinish(&canvas));
+    if (reporter->progress) PetscCall(reporter->progress(reporter->ctx, k + 1, count, 0));
   }
   PetscFunctionReturn(0);
 }

@@ -65,8 +65,8 @@ typedef struct {
 void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, const LamFrame *frame, LamView *view);
 LamRect LamFrameCharts(void);
 /* Draws the frames 0..count-1 as pages of a file, or as files: of "film.png" several become "film-0001.png" and so
-   on. */
+   on; tells the request's reporter. */
 typedef PetscErrorCode (*LamFrameFunction)(LamCanvas canvas, void *ctx, PetscInt frame);
-PetscErrorCode LamFilmDraw(const char path[], PetscInt count, LamFrameFunction draw, void *ctx);
+PetscErrorCode LamFilmDraw(const LamPlotRequest *request, PetscInt count, LamFrameFunction draw, void *ctx);
 
 #endif

@@ -24,6 +24,14 @@ static PetscBool IsStopped(const LamMerge *m)
 
 /* ---- records ---- */
 
+/* Counts a record that has been read, sound or not. */
+static PetscErrorCode Count(LamMerge *m)
+{
+  PetscFunctionBeginUser;
+  if (++m->done % LAM_RECORDS_PER_REPORT == 0) PetscCall(LamMergeProgress(m));
+  PetscFunctionReturn(0);
+}
+
 /* A LamRecordVisitor. */
 static PetscErrorCode TakeRecord(void *ctx, const LamRecordLayout *layout, PetscInt number, const unsigned char *bytes,
                                  const char damage[])
@@ -32,6 +40,7 @@ static PetscErrorCode TakeRecord(void *ctx, const LamRecordLayout *layout, Petsc
 
   PetscFunctionBeginUser;
   if (IsStopped(m)) PetscFunctionReturn(0);
+  PetscCall(Count(m));
   PetscCheck(m->grid_text || !LamKeyIsNode(LamRecordInt(bytes + layout->key)), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: %s is missing, though there are nodes of a grid", m->grid_from, LAM_GRID_NAME);
   PetscCall(LamUnionTake(m->records, layout, bytes, m->report));
@@ -59,7 +68,10 @@ static PetscErrorCode TakeIfSound(void *ctx, const LamRecordLayout *layout, Pets
   if (!damage) {
     PetscCall(TakeRecord(s->merge, layout, number, bytes, NULL));
     s->sound++;
-  } else if (s->damaged++ < MOST_NAMED && s->counted) {
+    PetscFunctionReturn(0);
+  }
+  PetscCall(Count(s->merge));
+  if (s->damaged++ < MOST_NAMED && s->counted) {
     LamMergeMessage(s->merge, "%s: record %" PetscInt_FMT " is damaged (%s) and left out", s->path, number, damage);
   }
   PetscFunctionReturn(0);
@@ -199,7 +211,10 @@ static PetscErrorCode MergeLocked(LamMerge *m)
   PetscCall(LamMergeReadHeaders(m));
   ReportWriters(m);
   PetscCall(StartFile(m));
-  for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) PetscCall(LamFileRead(m->files[i], TakeFile, m));
+  for (PetscInt i = 0; i < m->n && !IsStopped(m); i++) {
+    PetscCall(LamFileRead(m->files[i], TakeFile, m));
+    PetscCall(LamMergeProgress(m));
+  }
   if (m->report->stopped) PetscFunctionReturn(0);
   PetscCheck(m->report->records || !m->options->salvage, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: not one record is sound; build the database anew", m->files[0]);

@@ -12,11 +12,20 @@ void LamMergeMessage(const LamMerge *m, const char format[], ...)
   char words[1024];
   va_list arguments;
 
-  if (!m->options->tell) return;
+  if (!m->options->reporter.message) return;
   va_start(arguments, format);
   vsnprintf(words, sizeof(words), format, arguments);
   va_end(arguments);
-  m->options->tell(m->options->ctx, words);
+  m->options->reporter.message(m->options->reporter.ctx, PETSC_FALSE, words);
+}
+
+PetscErrorCode LamMergeProgress(const LamMerge *m)
+{
+  const LamReporter *reporter = &m->options->reporter;
+
+  PetscFunctionBeginUser;
+  if (reporter->progress) PetscCall(reporter->progress(reporter->ctx, m->done, m->total, 0));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMergeCheckHash(const LamMerge *m, const char path[], const LamHeader *header)
@@ -49,8 +58,8 @@ static PetscErrorCode CheckGrid(LamMerge *m, const char path[], const char text[
   PetscFunctionReturn(0);
 }
 
-/* Conversion would lose members of a later version. */
-static PetscErrorCode CheckMembers(const char path[], hid_t file)
+/* Conversion would lose members of a later version. *extent: the number of allocated records. */
+static PetscErrorCode CheckMembers(const char path[], hid_t file, PetscInt *extent)
 {
   PetscBool known = PETSC_TRUE;
   char name[LAM_NAME_LENGTH];
@@ -67,6 +76,7 @@ static PetscErrorCode CheckMembers(const char path[], hid_t file)
     snprintf(name, sizeof(name), "%s", member);
     H5free_memory(member);
   }
+  *extent = LamRecordScanExtent(&scan, file);
   PetscCall(LamRecordScanClose(path, &scan));
   PetscCall(LamCloseHDF5(path, ours));
   PetscCheck(known, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -80,6 +90,7 @@ typedef struct {
   LamHeader header;
   PetscBool salvage;
   PetscBool matches;  /* the header's checksum is correct */
+  PetscInt records;   /* that will be read; in salvage at most */
   char *grid, *scene; /* NULL: none */
 } Source;
 
@@ -93,7 +104,8 @@ static PetscErrorCode ReadSource(const char path[], hid_t file, void *ctx)
   PetscFunctionBeginUser;
   s->matches = PETSC_TRUE;
   PetscCall(LamHeaderReadRoot(path, file, s->salvage ? &s->matches : NULL, &s->header));
-  PetscCall(CheckMembers(path, file));
+  PetscCall(CheckMembers(path, file, &s->records));
+  if (!s->salvage) PetscCall(LamCommittedRead(path, file, &s->records));
   PetscCall(LamFileGetText(path, file, LAM_GRID_NAME, &s->grid));
   if (s->salvage) PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   ierr = LamFileGetText(path, file, "/scene", &s->scene);
@@ -138,6 +150,7 @@ static PetscErrorCode TakeSource(LamMerge *m, const char path[], Source *s)
     LamMergeMessage(m, "%s: is in other units; the result has those of %s: apothem %g m, C1 + C2 %g Pa", path,
                     m->header_from, (double)m->scene.scales.length, (double)m->scene.scales.stress);
   m->scene.accuracy = PetscMin(m->scene.accuracy, h->accuracy);
+  m->total += s->records;
   PetscCall(CheckGrid(m, path, s->grid));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Commands that may take seconds show their progress on a terminal, and there alone; not with --quiet.
+. "$(dirname "$0")/common.sh"
+set -e -o pipefail
+command -v script >/dev/null || exit 77
+
+tissue >s.yaml <<'YAML'
+sample: {stretch: {min: 0, max: 0.05}, turgor: {min: 0.01 MPa, max: 0.03 MPa}, accuracy: 0.1}
+process:
+  duration: 1 day
+  kinetics: [{of: walls, law: first_order, rate: 0.1 /day}]
+YAML
+"$lamella" build s.yaml -d db.h5 --quiet >/dev/null
+"$lamella" process s.yaml -o p.h5 --frames 3 --quiet >/dev/null
+for i in 1 2 3; do echo "1.01 0.01 0 1.02 ; 0.02 MPa"; done >lines
+
+# shows COMMAND: it draws a line over the one before, and removes it; elsewhere and with --quiet there is none
+shows() {
+  SHELL=$BASH script -qec "$1" screen.txt >/dev/null </dev/null || fail "$1: $(cat screen.txt)"
+  has screen.txt $'\r\033\\[K.*[0-9].*\r\033\\[K'
+  SHELL=$BASH script -qec "$1 --quiet" screen.txt >/dev/null </dev/null
+  ! grep -q $'\033' screen.txt || fail "progress despite --quiet: $1: $(cat screen.txt)"
+  bash -c "$1" >/dev/null 2>err.txt </dev/null
+  ! grep -q $'\033' err.txt || fail "progress without a terminal: $1: $(cat err.txt)"
+}
+
+shows "rm -f m.h5; '$lamella' merge m.h5 db.h5"
+shows "'$lamella' info db.h5 --check"
+shows "'$lamella' query db.h5 -F - <lines >rows.txt"
+shows "'$lamella' plot --film p.h5 -o film.pdf"
+[ "$(grep -c converged rows.txt)" = 3 ] || fail "rows: $(cat rows.txt)"
+# rows on the terminal are the progress
+script -qec "'$lamella' query db.h5 -F - <lines" screen.txt >/dev/null </dev/null
+! grep -q $'\033' screen.txt || fail "a bar between rows: $(cat screen.txt)"
