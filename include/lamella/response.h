@@ -155,6 +155,8 @@ typedef struct {
   PetscReal stress_power;   /* physical value = number * (C1 + C2)^stress_power */
   const char *const *names; /* of an enumeration, else NULL */
   const char *help;
+  const char *unit; /* of a real without a power of stress: "apothem", "s"; NULL: 1 */
+  const char *axes; /* what three numbers are: "face family", "11 22 12"; NULL: tensors, single numbers */
 } LamMember;
 LAM_EXPORT extern const LamMember LamResponseMembers[]; /* ends with a NULL name */
 #define LAM_NOT_IN_FILE ((size_t)-1)                    /* offset of a member that a record does not contain */

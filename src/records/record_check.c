@@ -112,6 +112,8 @@ static PetscErrorCode CheckRecords(Check *c)
   AddUnsummed(c, scan.dataset, LAM_COUNTER_SUM, "commit counter");
   if (count) AddUnsummed(c, scan.dataset, LAM_RECORDS_SUM, "order of the records");
   AddUnsummed(c, scan.dataset, LAM_TYPE_SUM, "members of the records");
+  (void)Sound(c, "units of the records", LamRecordUnitsCheck(c->path, scan.dataset));
+  AddUnsummed(c, scan.dataset, LAM_UNITS_SUM, "units of the records");
   PetscCall(LamRecordScanClose(c->path, &scan));
   PetscFunctionReturn(0);
 }

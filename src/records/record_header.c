@@ -118,7 +118,7 @@ static PetscErrorCode WriteCounter(const char path[], hid_t dataset)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
+static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file, const LamScales *scales)
 {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED, chunk = LAM_RECORDS_PER_CHUNK;
   hid_t type, space, list, dataset;
@@ -134,6 +134,7 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file)
   PetscCall(LamRecordTypeSum(type, &sum));
   PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which then lies in one sector */
   PetscCall(WriteCounter(path, dataset));
+  PetscCall(LamRecordUnitsWrite(path, dataset, scales));
   PetscCall(LamCloseHDF5(path, dataset, list, space, type));
   PetscFunctionReturn(0);
 }
@@ -149,7 +150,7 @@ static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[],
   uint32_t sum;
 
   PetscFunctionBeginUser;
-  PetscCall(WriteEmptyRecords(path, file));
+  PetscCall(WriteEmptyRecords(path, file, &scene->scales));
   snprintf(name, sizeof(name), DESCRIPTION, hash);
   PetscCall(LamFileWriteText(path, file, name, json));
   if (scene->text) PetscCall(LamFileWriteText(path, file, "/scene", scene->text));

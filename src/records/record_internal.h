@@ -79,6 +79,7 @@ PetscErrorCode LamTextTypeCreate(const char path[], const char text[], hid_t *ty
 #define LAM_COUNTER_SUM "committed_check" /* of the 8 bytes of `committed` */
 #define LAM_RECORDS_SUM "records_check"   /* of the checksums of the committed records, in their order */
 #define LAM_TYPE_SUM "type_check"         /* of names, offsets and sizes of the members of a record */
+#define LAM_UNITS_SUM "units_check"       /* of the attributes of record_units.c */
 
 PetscErrorCode LamSumWrite(const char path[], hid_t object, const char name[], uint32_t sum);
 /* Value for an overwritten array, whose checksum is not valid. */
@@ -91,6 +92,13 @@ uint32_t LamBytesSum(uint32_t before, const void *bytes, size_t n);
 PetscErrorCode LamRecordTypeSum(hid_t file_type, uint32_t *sum);
 /* The same for records, using only their checksums. */
 uint32_t LamRecordsSum(uint32_t before, const LamRecordLayout *layout, PetscInt n, const unsigned char *bytes);
+
+/* ---- record_units.c ---- */
+
+/* Units and axes of the members of a record, as attributes of /records; files of earlier versions have none. */
+PetscErrorCode LamRecordUnitsWrite(const char path[], hid_t dataset, const LamScales *scales);
+/* PETSC_ERR_USER_INPUT: they have been changed. */
+PetscErrorCode LamRecordUnitsCheck(const char path[], hid_t dataset);
 
 /* ---- record_file.c ---- */
 

@@ -68,6 +68,24 @@ if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
   for file in db.h5 rve.h5 fe2.h5; do
     /usr/bin/python3 check.py $file >out.txt 2>&1 && [ ! -s out.txt ] || fail "$file is not sound in Python: $(cat out.txt)"
   done
+  # units and axes of all members, and the program of the document that converts to MPa by them
+  {
+    sed -n '/^    # stress in MPa, by/,/^$/s/^    //p' "$source/docs/reference/files.md"
+    cat <<'PYTHON'
+import numpy as np
+with h5py.File("db.h5") as f:
+    table = f["records"]
+    assert np.array_equal(P, table["P"][: table.attrs["committed"]] * (f.attrs["stress_unit_Pa"] * 1e-6))
+    assert unit["max_gap"] == "apothem" and unit["energy_turgor2"] == "1/stress_unit" and unit["seconds"] == "s"
+    axes = dict(line.split(": ") for line in table.attrs["axes"].decode().split("\n"))
+    for name in table.dtype.names:
+        base, shape = table.dtype[name].base, table.dtype[name].shape
+        assert (name in unit) == (base == np.float64), name
+        assert (name in axes) == (shape != ()), name
+        assert axes.get(name) not in ("i j", "i j k l") or axes[name].split() == list("ijkl")[: len(shape)], name
+PYTHON
+  } >units.py
+  expect 0 /usr/bin/python3 units.py
   /usr/bin/python3 check.py damaged.h5 >out.txt
   [ "$(cat out.txt)" = "record: damaged
 /scene: damaged" ] || fail "damage in Python: $(cat out.txt)"
