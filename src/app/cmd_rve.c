@@ -219,7 +219,9 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   LamRVERun *run = &command.run;
   PetscBool done;
   const LamOption options[] = {
-      {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "states and fields, for plot and query", &run->out_path},
+      {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
+       "states and fields, for plot and query, with OUT.xdmf (for ParaView) and OUT.csv (a table) beside it",
+       &run->out_path},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per state on stdout", &command.console.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the effective tangent too", &command.tangent},
       {0, "second-mesh", LAM_OPTION_FLAG, NULL,

@@ -1,18 +1,14 @@
 /*
-  Result file of a macroscale run, and the XDMF 3 file that describes it: a temporal collection of grids of quadratic
-  elements, readable by ParaView and meshio.
-
-  Every grid names topology and geometry itself: readers differ in their support of references between grids.
-  Reference: https://www.xdmf.org/index.php/XDMF_Model_and_Format
+  Result file of a macroscale run, and the XDMF file that describes it.
 */
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include "beside.h"
 #include "fe2_file.h"
 #include "names.h"
 #include "study.h"
+#include "xdmf.h"
 
 /* A field of every step, /macro/step/<number>/<name>: columns of an array of LamMacroFields, times a factor. */
 typedef struct {
@@ -236,80 +232,37 @@ static PetscErrorCode WriteSummary(LamFE2File file, const LamSummary *summary)
 
 /* ---- XDMF ---- */
 
-/* Prints the file name without its folder, as XML text. */
-static void PrintName(FILE *out, const char path[])
-{
-  const char *slash = strrchr(path, '/');
-
-  for (const char *c = slash ? slash + 1 : path; *c; c++) {
-    if (*c == '&')
-      fputs("&amp;", out);
-    else if (*c == '<')
-      fputs("&lt;", out);
-    else if (*c == '>')
-      fputs("&gt;", out);
-    else
-      fputc(*c, out);
-  }
-}
-
-static void PrintItem(FILE *out, const LamFE2File file, const char dataset[], const char type[], PetscInt rows,
-                      PetscInt columns)
-{
-  fprintf(out, "          <DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%" PetscInt_FMT, type,
-          rows);
-  if (columns > 1) fprintf(out, " %" PetscInt_FMT, columns);
-  fputs("\">", out);
-  PrintName(out, file->path);
-  fprintf(out, ":%s</DataItem>\n", dataset);
-}
-
-static void PrintField(FILE *out, const LamFE2File file, const Field *field, PetscInt step, PetscInt rows)
-{
-  const char *type = field->columns == 1 ? "Scalar" : field->columns == 3 ? "Vector" : "Tensor";
-  char dataset[128];
-
-  snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/%s", step, field->name);
-  fprintf(out, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">\n", field->name, type,
-          field->columns == 3 ? "Node" : "Cell");
-  PrintItem(out, file, dataset, "Float", rows, field->columns);
-  fputs("        </Attribute>\n", out);
-}
-
-static void PrintGrid(FILE *out, const LamFE2File file, const LamMacroFields *fields, PetscInt step, PetscReal time)
+static void WriteGrid(LamXDMF *xdmf, const LamFE2File file, const LamMacroFields *fields, PetscInt step, PetscReal time)
 {
   const PetscInt nodes = fields->node_count, elements = fields->element_count;
+  const LamXDMFData mixed = {"/macro/topology", file->topology_length, 1},
+                    alike = {"/macro/elements", elements, file->topology == TRIANGLES ? 6 : 9};
 
-  fprintf(out, "      <Grid Name=\"step %" PetscInt_FMT "\" GridType=\"Uniform\">\n", step);
-  fprintf(out, "        <Time Value=\"%.17g\"/>\n", (double)time);
-  fprintf(out, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%" PetscInt_FMT "\">\n",
-          TopologyNames[file->topology], elements);
-  if (file->topology == MIXED)
-    PrintItem(out, file, "/macro/topology", "Int", file->topology_length, 1);
-  else
-    PrintItem(out, file, "/macro/elements", "Int", elements, file->topology == TRIANGLES ? 6 : 9);
-  fputs("        </Topology>\n        <Geometry GeometryType=\"XY\">\n", out);
-  PrintItem(out, file, "/macro/nodes", "Float", nodes, 2);
-  fputs("        </Geometry>\n", out);
-  for (PetscInt f = 0; f < file->field_count; f++)
-    PrintField(out, file, &file->fields[f], step, file->fields[f].columns == 3 ? nodes : elements);
-  fputs("      </Grid>\n", out);
+  LamXDMFBegin(xdmf, "step", step, time, TopologyNames[file->topology], elements,
+               file->topology == MIXED ? mixed : alike, (LamXDMFData){"/macro/nodes", nodes, 2});
+  for (PetscInt f = 0; f < file->field_count; f++) {
+    const Field *field = &file->fields[f];
+    const PetscBool on_nodes = (PetscBool)(field->columns == 3);
+    char dataset[128];
+
+    snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/%s", step, field->name);
+    LamXDMFField(xdmf, field->name, on_nodes, "Float",
+                 (LamXDMFData){dataset, on_nodes ? nodes : elements, field->columns});
+  }
+  LamXDMFEnd(xdmf);
 }
 
-/* Rewrites the .xdmf file. It refers to the HDF5 file without folder, so that both can be moved together. */
+/* Rewrites the .xdmf file. */
 static PetscErrorCode WriteXDMF(LamFE2File file, const LamMacroFields *fields, const LamCurve *curve)
 {
   const LamCurveColumn time = LamCurveHas(curve, LAM_CURVE_TIME) ? LAM_CURVE_TIME : LAM_CURVE_LOAD_FACTOR;
-  LamBeside xdmf;
+  LamXDMF xdmf;
 
   PetscFunctionBeginUser;
-  PetscCall(LamBesideOpen(file->path, ".xdmf", &xdmf));
-  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n", xdmf.out);
-  fputs("    <Grid Name=\"load steps\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", xdmf.out);
+  PetscCall(LamXDMFOpen(file->path, "load steps", &xdmf));
   for (PetscInt k = 0; k < file->step_count; k++)
-    PrintGrid(xdmf.out, file, fields, file->steps[k], curve->rows[k].value[time]);
-  fputs("    </Grid>\n  </Domain>\n</Xdmf>\n", xdmf.out);
-  PetscCall(LamBesideClose(&xdmf));
+    WriteGrid(&xdmf, file, fields, file->steps[k], curve->rows[k].value[time]);
+  PetscCall(LamXDMFClose(&xdmf));
   PetscFunctionReturn(0);
 }
 

@@ -80,7 +80,8 @@ static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[],
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state)
+PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
+                               PetscBool *written)
 {
   PetscReal *mode, eigenvalue;
   PetscInt dims[2] = {0, 2};
@@ -91,7 +92,8 @@ PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRV
   dims[0] = mesh.node_count;
   PetscCall(PetscMalloc1(2 * dims[0], &mode));
   PetscCall(LamRVEGetSoftestMode(rve, state, &eigenvalue, mode));
-  if (eigenvalue < 0.0) PetscCall(WriteReals(writer, group, "softest_mode", 2, dims, mode, "1"));
+  *written = (PetscBool)(eigenvalue < 0.0);
+  if (*written) PetscCall(WriteReals(writer, group, "softest_mode", 2, dims, mode, "1"));
   PetscCall(PetscFree(mode));
   PetscFunctionReturn(0);
 }
@@ -115,5 +117,32 @@ PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], Lam
   PetscCall(WriteReals(writer, group, "wall_stress", 1, dims, stress, "MPa"));
   PetscCall(PetscFree3(x, fibre, stress));
   PetscCall(WriteInterface(writer, group, rve, state, MPa));
+  PetscFunctionReturn(0);
+}
+
+static void DescribeNodes(LamXDMF *xdmf, const char group[], const char name[], PetscInt nodes, PetscInt columns)
+{
+  char path[2 * LAM_NAME_LENGTH];
+
+  snprintf(path, sizeof(path), "%s/%s", group, name);
+  LamXDMFField(xdmf, name, PETSC_TRUE, "Float", (LamXDMFData){path, nodes, columns});
+}
+
+PetscErrorCode LamRVEDescribeFields(LamXDMF *xdmf, const char group[], LamRVE rve, PetscInt number, PetscBool mode)
+{
+  char x[2 * LAM_NAME_LENGTH];
+  LamRVEMesh mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetMesh(rve, &mesh));
+  snprintf(x, sizeof(x), "%s/x", group);
+  LamXDMFBegin(xdmf, "state", number, (PetscReal)number, "Quadrilateral_9", mesh.element_count,
+               (LamXDMFData){"/mesh/elements", mesh.element_count, 9}, (LamXDMFData){x, mesh.node_count, 2});
+  LamXDMFField(xdmf, "cell_of", PETSC_FALSE, "Int", (LamXDMFData){"/mesh/cell_of", mesh.element_count, 1});
+  DescribeNodes(xdmf, group, "x", mesh.node_count, 2); /* as readers take the positions of the first state for all */
+  DescribeNodes(xdmf, group, "fibre_stretch", mesh.node_count, 1);
+  DescribeNodes(xdmf, group, "wall_stress", mesh.node_count, 1);
+  if (mode) DescribeNodes(xdmf, group, "softest_mode", mesh.node_count, 2);
+  LamXDMFEnd(xdmf);
   PetscFunctionReturn(0);
 }

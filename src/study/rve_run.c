@@ -12,15 +12,17 @@
 static PetscErrorCode WriteState(LamRVERun *run, PetscInt number, const LamResponse *response)
 {
   const PetscInt64 key = number;
+  const LamRVE rve = run->meshes.rve[0];
+  const LamRVEState state = run->meshes.state[0];
+  PetscBool mode = PETSC_FALSE;
   char group[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, number));
-  if (LamResponseHasFields(response))
-    PetscCall(LamRVEWriteFields(run->writer, group, run->meshes.rve[0], run->meshes.state[0], &run->scene->scales));
-  if (response->status == LAM_UNSTABLE)
-    PetscCall(LamRVEWriteMode(run->writer, group, run->meshes.rve[0], run->meshes.state[0]));
+  if (LamResponseHasFields(response)) PetscCall(LamRVEWriteFields(run->writer, group, rve, state, &run->scene->scales));
+  if (response->status == LAM_UNSTABLE) PetscCall(LamRVEWriteMode(run->writer, group, rve, state, &mode));
   PetscCall(LamRecordWriterCommit(run->writer, 1, &key, response));
+  if (LamResponseHasFields(response)) PetscCall(LamRVEDescribeFields(&run->xdmf, group, rve, number, mode));
   PetscFunctionReturn(0);
 }
 
@@ -157,10 +159,16 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
     PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
     ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
     if (!ierr) ierr = LamRVECSVOpen(run);
+    if (!ierr) ierr = LamXDMFOpen(run->out_path, "states", &run->xdmf);
   }
   if (!ierr) ierr = SolveStates(run);
   if (run->csv.out) {
     const PetscErrorCode written = LamBesideClose(&run->csv);
+
+    if (!ierr) ierr = written;
+  }
+  if (run->xdmf.file.out) {
+    const PetscErrorCode written = LamXDMFClose(&run->xdmf);
 
     if (!ierr) ierr = written;
   }

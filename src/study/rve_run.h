@@ -14,6 +14,7 @@
 #include "failure.h"
 #include "mechanical_test.h"
 #include "study.h"
+#include "xdmf.h"
 #include <lamella/database.h>
 
 typedef struct LamRVERun_s {
@@ -37,6 +38,7 @@ typedef struct LamRVERun_s {
   LamTest test;           /* curve of the states with a solution, with `readings` */
   LamRecordWriter writer; /* NULL without a file */
   LamBeside csv;          /* with a file: its table for spreadsheets */
+  LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
   PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
   PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
