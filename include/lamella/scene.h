@@ -291,6 +291,7 @@ LAM_EXPORT extern const char *const LamTissueFieldNames[]; /* "orientation", ...
 /* Fields that vary between material points; they override the values of the tissue and of the regions. */
 typedef struct {
   LamPlaceField value[LAM_TISSUE_FIELD_COUNT]; /* NULL: does not vary; owned */
+  LamScenePlace place[LAM_TISSUE_FIELD_COUNT]; /* of its expression or table */
   PetscReal unit[LAM_TISSUE_FIELD_COUNT];      /* the SI value (rad, Pa, Pa, m) of 1 */
   PetscInt levels;                             /* number of wall thicknesses that are solved; 0: not chosen */
 } LamTissueFields;
@@ -373,7 +374,7 @@ typedef struct {
   char **warnings; /* what is accepted and probably a mistake, in the form of LamSceneRead's messages; owned */
   LamScales scales;
   LamMicrostructure micro;
-  PetscReal turgor; /* default turgor of a load; in C1 + C2 */
+  PetscReal turgor;             /* default turgor of a load; in C1 + C2 */
   LamScenePlace turgor_place;   /* of rve.turgor.pressure */
   PetscBool sealed;             /* the cells keep the water that they contain at F = I with this turgor, ... */
   PetscReal water_bulk_modulus; /* ... with this bulk modulus, C1 + C2 */

@@ -209,6 +209,7 @@ static PetscErrorCode BuildField(const LamNode *block, LamTissueField which, Lam
   PetscCall(LamQuantityRead(one, dimensions[which], &scene->fields.unit[which], reason));
   LamSceneCheck(!reason[0], unit, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimensions[which]]);
   PetscCall(ReadField(field, &scene->fields.value[which]));
+  scene->fields.place[which] = LamNodePlace(field);
   LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, block,
                     "rve.variation gives each cell its thickness; leave out one of them");
   PetscFunctionReturn(0);

@@ -134,18 +134,18 @@ static PetscErrorCode CheckValue(const LamScene *scene, LamTissueField field, co
   const LamScales *scales = place->region < 0 ? &scene->scales : &scene->regions[place->region].scales;
   const LamMicrostructure *micro = place->region < 0 ? &scene->micro : &scene->regions[place->region].micro;
   const PetscReal value = place->value[field], outer = LamOuterApothem(micro) * scales->length;
-  char text[120];
+  char text[120], at[LAM_PLACE_TEXT];
 
   PetscFunctionBeginUser;
+  (void)LamScenePlaceText(scene, &scene->fields.place[field], at);
   if (field == LAM_TISSUE_COHESION && value < 0) {
     snprintf(text, sizeof(text), "is %g MPa at x = %g mm, y = %g mm", value * 1e-6, X[0], X[1]);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.cohesion: %s; it must not be negative",
-            scene->path, text);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.cohesion: %s; it must not be negative", at, text);
   }
   if (field == LAM_TISSUE_WALL_THICKNESS && !(value > 0 && value < outer)) {
     snprintf(text, sizeof(text), "is %g um at x = %g mm, y = %g mm; it must lie between 0 and the apothem, %g um",
              value * 1e6, X[0], X[1], outer * 1e6);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.wall_thickness: %s", scene->path, text);
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: macro.fields.wall_thickness: %s", at, text);
   }
   PetscFunctionReturn(0);
 }

@@ -28,6 +28,9 @@ body 'regions: [{name: skin, where: y > 5, cell: {wall_thickness: 20 um}}]' >rig
 expect 0 "$lamella" fe2 right.yaml --json
 [ ! -s err.txt ] || fail "warns without need: $(cat err.txt)"
 
+body 'fields: {wall_thickness: {expression: 10 * y - 5, unit: um}}' >thin.yaml
+told 2 thin.yaml '12:41: macro.fields.wall_thickness: is [-0-9.]* um at x = [0-9.]* mm, y = [0-9.]* mm; it must lie between 0 and the apothem'
+
 # Gmsh files: the line of the scene, and that of the file
 body | sed 's/{box.*/{gmsh: body.msh}/' >gmsh.yaml
 told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: No such file or directory; a relative path counts from the folder of the scene'
