@@ -29,6 +29,7 @@ static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for th
    pressures. It allows for the jumps of interpolated responses at boundaries between cells of a table and between
    neighbouring records. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
+/* MOST_RELEASES: further iterations where nodes leave obstacles one by one (rows.c), chosen: about three for each. */
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, MOST_RELEASES = 25, PATIENCE = 6 };
 
 /* State of the load program: fractions of the turgor and of the prescribed displacements. */
@@ -212,7 +213,6 @@ static PetscErrorCode SetLeniency(LamMacro macro)
 
 PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
 {
-  /* nodes leave the obstacles of a sealed body one by one (rows.c) */
   const PetscInt most = MAX_ITERATIONS + (macro->seal && macro->obstacle_count ? MOST_RELEASES : 0);
   SNESConvergedReason reason;
   PetscInt iterations;

@@ -3,6 +3,7 @@
 */
 #include "beside.h"
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -30,4 +31,10 @@ PetscErrorCode LamBesideClose(LamBeside *file)
   if (failed) unlink(file->temporary);
   PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s: cannot write", file->path);
   PetscFunctionReturn(0);
+}
+
+void LamBesideNumber(FILE *out, PetscReal value)
+{
+  fputc(',', out);
+  if (isfinite(value)) fprintf(out, "%.12g", (double)value);
 }

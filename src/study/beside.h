@@ -16,5 +16,7 @@ typedef struct {
    Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE. */
 PetscErrorCode LamBesideOpen(const char hdf5[], const char ending[], LamBeside *file);
 PetscErrorCode LamBesideClose(LamBeside *file);
+/* A comma and a number of a table; nothing behind the comma if it is not known. */
+void LamBesideNumber(FILE *out, PetscReal value);
 
 #endif

@@ -108,23 +108,17 @@ static void PrintHeader(FILE *out, const LamCurve *curve)
   fputc('\n', out);
 }
 
-static void PrintNumber(FILE *out, PetscReal value)
-{
-  fputc(',', out);
-  if (isfinite(value)) fprintf(out, "%.12g", (double)value);
-}
-
 static void PrintRow(FILE *out, const LamCurve *curve, const LamCurveRow *row)
 {
   fprintf(out, "%.12g", (double)row->value[LAM_CURVE_STEP]);
   for (int c = LAM_CURVE_STEP + 1; c < LAM_CURVE_COLUMN_COUNT; c++) {
     for (PetscInt s = 0; s < curve->side_count && c == LAM_CURVE_WORK; s++) {
-      for (int i = 0; i < 2; i++) PrintNumber(out, row->displacement[s][i]);
-      for (int i = 0; i < 2; i++) PrintNumber(out, row->reaction[s][i]);
+      for (int i = 0; i < 2; i++) LamBesideNumber(out, row->displacement[s][i]);
+      for (int i = 0; i < 2; i++) LamBesideNumber(out, row->reaction[s][i]);
     }
     for (PetscInt s = 0; s < curve->side_count && c == LAM_CURVE_WORK && curve->has_certified; s++)
-      for (int i = 0; i < 2; i++) PrintNumber(out, row->certified[s][i]);
-    if (LamCurveHas(curve, (LamCurveColumn)c)) PrintNumber(out, row->value[c]);
+      for (int i = 0; i < 2; i++) LamBesideNumber(out, row->certified[s][i]);
+    if (LamCurveHas(curve, (LamCurveColumn)c)) LamBesideNumber(out, row->value[c]);
   }
   fputc('\n', out);
 }

@@ -5,7 +5,6 @@
 #include "process_run.h"
 #include "beside.h"
 #include "names.h"
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -115,12 +114,6 @@ PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *sc
   PetscFunctionReturn(0);
 }
 
-static void PrintNumber(FILE *out, PetscReal value)
-{
-  fputc(',', out);
-  if (isfinite(value)) fprintf(out, "%.12g", (double)value);
-}
-
 PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *h)
 {
   static const int plane[] = {0, 1, 3, 4, 8};
@@ -142,10 +135,10 @@ PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scen
 
     fprintf(file.out, "%d,%s", (int)n, state->event == LAM_EVENT_COUNT ? "" : LamEventNames[state->event]);
     for (int c = 0; c < POINT_COLUMNS; c++)
-      PrintNumber(file.out,
-                  columns[c].factor * *(const PetscReal *)(const void *)((const char *)state + columns[c].offset));
-    for (int k = 0; k < 5; k++) PrintNumber(file.out, state->F[plane[k]]);
-    for (int k = 0; k < 5; k++) PrintNumber(file.out, state->response.P[plane[k]] * MPa);
+      LamBesideNumber(file.out,
+                      columns[c].factor * *(const PetscReal *)(const void *)((const char *)state + columns[c].offset));
+    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, state->F[plane[k]]);
+    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, state->response.P[plane[k]] * MPa);
     fputc('\n', file.out);
   }
   PetscCall(LamBesideClose(&file));

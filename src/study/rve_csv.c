@@ -11,36 +11,30 @@
   X("F21", F[3])                                                                                                       \
   X("F22", F[4])                                                                                                       \
   X("F33", F[8])                                                                                                       \
-  X("turgor (MPa)", r->load.turgor *MPa)                                                                               \
-  X("cohesion (MPa)", r->load.cohesion *MPa)                                                                           \
+  X("turgor (MPa)", (r->load.turgor) * MPa)                                                                            \
+  X("cohesion (MPa)", (r->load.cohesion) * MPa)                                                                        \
   X("P11 (MPa)", P[0] * MPa)                                                                                           \
   X("P12 (MPa)", P[1] * MPa)                                                                                           \
   X("P21 (MPa)", P[3] * MPa)                                                                                           \
   X("P22 (MPa)", P[4] * MPa)                                                                                           \
   X("P33 (MPa)", P[8] * MPa)                                                                                           \
-  X("turgor_mean (MPa)", r->turgor_mean *MPa)                                                                          \
+  X("turgor_mean (MPa)", (r->turgor_mean) * MPa)                                                                       \
   X("lumen_fraction", r->lumen_fraction)                                                                               \
   X("opening_fraction", r->opening_fraction)                                                                           \
   X("debonded_fraction", r->debonded_fraction)                                                                         \
   X("open_fraction", r->open_fraction)                                                                                 \
   X("max_gap (apothem)", r->max_gap)                                                                                   \
-  X("max_traction (MPa)", r->max_traction *MPa)                                                                        \
+  X("max_traction (MPa)", (r->max_traction) * MPa)                                                                     \
   X("error_estimate", r->error_estimate)
 #define CURVE_COLUMNS(X)                                                                                               \
   X("strain", p->strain)                                                                                               \
-  X("stress (MPa)", p->stress *MPa)                                                                                    \
-  X("modulus (MPa)", p->modulus *MPa)                                                                                  \
+  X("stress (MPa)", (p->stress) * MPa)                                                                                 \
+  X("modulus (MPa)", (p->modulus) * MPa)                                                                               \
   X("poisson", p->poisson)                                                                                             \
-  X("energy (kJ/m^3)", p->energy *MPa * 1e3)
+  X("energy (kJ/m^3)", (p->energy) * MPa * 1e3)
 
 #define PRINT_NAME(name, value) fputs("," name, out);
-#define PRINT_VALUE(name, value) PrintNumber(out, value);
-
-static void PrintNumber(FILE *out, PetscReal value)
-{
-  fputc(',', out);
-  if (isfinite(value)) fprintf(out, "%.12g", (double)value);
-}
+#define PRINT_VALUE(name, value) LamBesideNumber(out, value);
 
 PetscErrorCode LamRVECSVOpen(LamRVERun *run)
 {
