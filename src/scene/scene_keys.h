@@ -126,6 +126,10 @@ PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, Pe
 PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
+#define LAM_SAME_TIME 1e-9 /* of the duration: above the rounding of a sum of times, below what anyone writes */
+/* scene_process_doubts.c: warns of what a complete process accepts and nobody means. cycle: the time that the program
+   takes once. */
+PetscErrorCode LamSceneDoubtProcess(const LamNode *block, LamScene *scene, PetscReal cycle);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
 /* scene_cells.c, part of the RVE: variation between cells. */

@@ -254,39 +254,6 @@ static PetscErrorCode BuildWater(const LamNode *block, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-/* Osmotic pressure outside at the start; of two entries at time 0 the last one. */
-static PetscReal OutsideAtStart(const LamProcessSpec *spec)
-{
-  PetscInt k = 0;
-
-  while (k + 1 < spec->surroundings_count && spec->surroundings[k + 1].time <= 0) k++;
-  return spec->surroundings[k].outside;
-}
-
-/* Warns where the osmotic pressures hold another turgor than the cells have. Call after BuildSurroundings. */
-static PetscErrorCode WarnOfImbalance(const LamNode *block, LamScene *scene)
-{
-  const LamNode *node = LamNodeFind(block, "osmotic_pressure");
-  const LamWaterSpec *water = &scene->process.water;
-  const PetscReal MPa = scene->scales.stress * 1e-6, outside = OutsideAtStart(&scene->process);
-  const PetscReal held = PetscMax(0, water->reflection * (water->osmotic - outside)), turgor = scene->turgor;
-  char balance[LAM_REASON_LENGTH] = "";
-
-  PetscFunctionBeginUser;
-  if (!node || water->permeability == 0 || fabs(held - turgor) <= scene->accuracy * PetscMax(held, turgor))
-    PetscFunctionReturn(0);
-  if (water->reflection > 0)
-    snprintf(balance, sizeof(balance), "; leave it out, or write %.4g MPa, for a start in equilibrium",
-             (double)((turgor / water->reflection + outside) * MPa));
-  PetscCall(LamSceneWarn(scene, node, LAM_MISTAKE_VALUE, NULL,
-                         "with %.4g MPa outside it holds a turgor of %.4g MPa, but that of rve.turgor is %.4g MPa: %s, "
-                         "turgor %s by up to %.4g MPa%s",
-                         (double)(outside * MPa), (double)(held * MPa), (double)(turgor * MPa),
-                         isfinite(water->permeability) ? "from the start" : "at once",
-                         held > turgor ? "rises" : "falls", (double)(fabs(held - turgor) * MPa), balance));
-  PetscFunctionReturn(0);
-}
-
 /* ---- kinetics ---- */
 
 /* Which laws need a key beside their name, and which allow it; the others ignore it. */
@@ -462,17 +429,6 @@ static PetscErrorCode BuildLegs(const LamNode *block, LamScene *scene, PetscReal
 
 /* ---- duration ---- */
 
-#define SAME_TIME 1e-9 /* of the duration: above the rounding of a sum of times, below what anyone writes */
-
-/* The time in the unit of the longest of a message. */
-static void TimeText(PetscReal time, PetscReal longest, char text[LAM_REASON_LENGTH])
-{
-  PetscReal seconds;
-  const char *unit = LamTimeUnit(longest, &seconds);
-
-  snprintf(text, LAM_REASON_LENGTH, "%.6g %s", (double)(time / seconds), unit);
-}
-
 /* A jump at the end of the process is not seen. */
 static PetscErrorCode CheckJumps(const LamNode *list, const LamProcessSpec *spec, PetscReal cycle)
 {
@@ -484,21 +440,20 @@ static PetscErrorCode CheckJumps(const LamNode *list, const LamProcessSpec *spec
     const PetscReal before = cycle > 0 && at > 0 ? rint((spec->duration - at) / cycle) : 0; /* repetitions */
     const PetscReal last = PetscMax(0, PetscMin(before, (PetscReal)(spec->repeat - 1))) * cycle + at;
 
-    LamSceneCheck(spec->legs[k].duration != 0 || fabs(last - spec->duration) > SAME_TIME * spec->duration, entry,
+    LamSceneCheck(spec->legs[k].duration != 0 || fabs(last - spec->duration) > LAM_SAME_TIME * spec->duration, entry,
                   "is a jump at the very end, of which nothing is seen; make process.duration longer");
     at += spec->legs[k].duration;
   }
   PetscFunctionReturn(0);
 }
 
-/* The duration, where it is not given; warns of what lies beyond it, where it is. */
+/* The duration, where it is not given. */
 static PetscErrorCode BuildDuration(const LamNode *block, LamScene *scene, PetscReal cycle)
 {
-  const LamNode *duration = LamNodeFind(block, "duration"), *surroundings = LamNodeFind(block, "surroundings");
+  const LamNode *duration = LamNodeFind(block, "duration");
   LamProcessSpec *spec = &scene->process;
-  const PetscReal program = (PetscReal)spec->repeat * cycle;
-  const PetscReal bath = spec->surroundings[spec->surroundings_count - 1].time, end = PetscMax(program, bath);
-  char own[LAM_REASON_LENGTH], wanted[LAM_REASON_LENGTH], cut[LAM_REASON_LENGTH];
+  const PetscReal bath = spec->surroundings[spec->surroundings_count - 1].time;
+  const PetscReal end = PetscMax((PetscReal)spec->repeat * cycle, bath);
 
   PetscFunctionBeginUser;
   LamSceneRequire(
@@ -507,22 +462,6 @@ static PetscErrorCode BuildDuration(const LamNode *block, LamScene *scene, Petsc
       "take time");
   if (!duration) spec->duration = end;
   PetscCall(CheckJumps(LamNodeFind(block, "program"), spec, cycle));
-  if (end <= spec->duration * (1 + SAME_TIME)) PetscFunctionReturn(0);
-  TimeText(spec->duration, end, own);
-  if (program > spec->duration * (1 + SAME_TIME)) {
-    TimeText(program, end, wanted);
-    TimeText(program - spec->duration, end, cut);
-    PetscCall(LamSceneWarn(scene, duration, LAM_MISTAKE_VALUE, NULL,
-                           "process.program%s takes %s, of which the last %s are cut off; write %s, or leave it out",
-                           spec->repeat > 1 ? ", with its repetitions," : "", wanted, cut, wanted));
-  }
-  if (bath > spec->duration * (1 + SAME_TIME)) {
-    TimeText(bath, end, wanted);
-    PetscCall(LamSceneWarn(scene, LamNodeFind(surroundings->last, "time"), LAM_MISTAKE_VALUE, NULL,
-                           "is never reached: the process ends at %s (process.duration, line %d); write %s there, or "
-                           "leave that out",
-                           own, duration->line, wanted));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -544,11 +483,11 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
                     "permeability: 0 m/s/MPa for cells that keep their water");
   PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
   PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
-  if (scene->process.has_water) PetscCall(WarnOfImbalance(LamNodeFind(block, "water"), scene));
   PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));
   PetscCall(BuildLegs(block, scene, &cycle));
   PetscCall(BuildDuration(block, scene, cycle));
   if (!output) spec->output = spec->duration / 100;
   LamSceneCheck(spec->duration / spec->output <= MAX_OUTPUTS, output, TOO_MANY_OUTPUTS, MAX_OUTPUTS);
+  PetscCall(LamSceneDoubtProcess(block, scene, cycle));
   PetscFunctionReturn(0);
 }

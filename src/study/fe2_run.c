@@ -3,6 +3,7 @@
 */
 #include "fe2_run.h"
 #include "clock.h"
+#include "turgor_stretch.h"
 
 PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
 {
@@ -10,6 +11,7 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   *finished = PETSC_FALSE;
   run->start = LamClock();
   if (!run->scene) PetscCall(LamSceneRead(run->scene_path, &run->scene));
+  if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));
   PetscCall(LamMacroSetUp(run->macro));

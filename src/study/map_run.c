@@ -9,6 +9,7 @@
   and their points are solved again on resuming.
 */
 #include "rounding.h"
+#include "turgor_stretch.h"
 #include "dispatch.h"
 #include "map.h"
 #include "error_model.h"
@@ -138,6 +139,7 @@ static PetscErrorCode OpenWriter(LamMap *m)
   PetscFunctionBeginUser;
   PetscCall(LamChooseMesh(&described));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &described.micro, m->scene->accuracy));
+  LamWarnOfTurgor(&m->reporter, m->scene);
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
   PetscCall(
       LamRecordWriterOpen(m->path, "map", m->resume ? LAM_WRITE_APPEND : LAM_WRITE_CREATE, &described, &m->writer));

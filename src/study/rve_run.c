@@ -41,7 +41,6 @@ static LamWanted Wanted(const LamRVERun *run)
 PetscErrorCode LamRVERunPrepare(LamRVERun *run)
 {
   const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
-  char turgor[LAM_TURGOR_TEXT];
   LamPlan plan;
 
   PetscFunctionBeginUser;
@@ -50,8 +49,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
              "%s: has no block `load`, which says what states to solve", run->scene->path);
   PetscCall(LamPlanMake(run->scene, &plan));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &run->reporter, &plan.micro, run->scene->accuracy));
-  PetscCall(LamTurgorWarning(run->scene, turgor));
-  if (turgor[0]) LamReportWarning(&run->reporter, "%s", turgor);
+  LamWarnOfTurgor(&run->reporter, run->scene);
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,

@@ -2,6 +2,7 @@
   Functions shared by all studies.
 */
 #include "study.h"
+#include "turgor_stretch.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <sys/resource.h>
@@ -40,6 +41,7 @@ void LamReportWarning(const LamReporter *reporter, const char format[], ...)
 void LamReportScene(const LamReporter *reporter, const LamScene *scene)
 {
   for (PetscInt k = 0; k < scene->warning_count; k++) LamReportWarning(reporter, "%s", scene->warnings[k]);
+  LamWarnOfTurgor(reporter, scene);
 }
 
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed)

@@ -12,7 +12,7 @@
 
 void LamReportNote(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 void LamReportWarning(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
-/* The warnings of the scene. On rank 0. */
+/* The warnings of the scene, and of its turgor. On rank 0. */
 void LamReportScene(const LamReporter *reporter, const LamScene *scene);
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed);
 

@@ -89,24 +89,43 @@ static void Sentence(const char at[], const char key[], PetscReal stretch, Petsc
            at, key, (double)MPa, words);
 }
 
-PetscErrorCode LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT])
+/* Largest turgors of the blocks that have their own. */
+typedef struct {
+  const char *key;
+  PetscReal turgor;
+} Block;
+enum { LOAD, PROCESS, MAP, BLOCKS };
+
+static void FindLargest(const LamScene *scene, Block block[BLOCKS])
 {
-  PetscReal stretch = LamTurgorStretch(&scene->micro, scene->turgor), largest = scene->turgor;
+  block[LOAD] = (Block){"load: turgor", 0};
+  block[PROCESS] = (Block){"process.surroundings: turgor", 0};
+  block[MAP] = (Block){"map: turgor", 0};
+  for (PetscInt k = 0; k < scene->load_count; k++)
+    block[LOAD].turgor = PetscMax(block[LOAD].turgor, scene->loads[k].turgor);
+  for (PetscInt k = 0; k < scene->process.surroundings_count; k++)
+    block[PROCESS].turgor = PetscMax(block[PROCESS].turgor, scene->process.surroundings[k].turgor);
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT && scene->has_map; a++)
+    if (scene->map[a].quantity == LAM_MAP_TURGOR) block[MAP].turgor = PetscMax(block[MAP].turgor, scene->map[a].to);
+}
+
+void LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT])
+{
+  PetscReal stretch = LamTurgorStretch(&scene->micro, scene->turgor);
   const LamScenePlace none = {0};
   char at[LAM_PLACE_TEXT], key[LAM_NAME_LENGTH + 40];
+  Block block[BLOCKS];
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
-  if (stretch > DOUBTFUL_STRETCH) {
+  if (stretch > DOUBTFUL_STRETCH)
     Sentence(LamScenePlaceText(scene, &scene->turgor_place, at), "rve.turgor.pressure", stretch,
              scene->turgor * scene->scales.stress * 1e-6, text);
-    PetscFunctionReturn(0);
-  }
-  for (PetscInt k = 0; k < scene->load_count; k++) largest = PetscMax(largest, scene->loads[k].turgor);
-  stretch = LamTurgorStretch(&scene->micro, largest);
-  if (stretch > DOUBTFUL_STRETCH) {
-    Sentence(LamScenePlaceText(scene, &none, at), "load: turgor", stretch, largest * scene->scales.stress * 1e-6, text);
-    PetscFunctionReturn(0);
+  FindLargest(scene, block);
+  for (int b = 0; b < BLOCKS && !text[0]; b++) {
+    stretch = LamTurgorStretch(&scene->micro, block[b].turgor);
+    if (stretch > DOUBTFUL_STRETCH)
+      Sentence(LamScenePlaceText(scene, &none, at), block[b].key, stretch,
+               block[b].turgor * scene->scales.stress * 1e-6, text);
   }
   for (PetscInt r = 0; r < scene->region_count && !text[0]; r++) {
     const LamRegion *region = &scene->regions[r];
@@ -117,5 +136,12 @@ PetscErrorCode LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT
     Sentence(LamScenePlaceText(scene, &region->place, at), key, stretch, region->turgor * region->scales.stress * 1e-6,
              text);
   }
-  PetscFunctionReturn(0);
+}
+
+void LamWarnOfTurgor(const LamReporter *reporter, const LamScene *scene)
+{
+  char text[LAM_TURGOR_TEXT];
+
+  LamTurgorWarning(scene, text);
+  if (text[0]) LamReportWarning(reporter, "%s", text);
 }

@@ -11,7 +11,10 @@
    if cells differ. Infinite: beyond 10, or none is in balance. */
 PetscReal LamTurgorStretch(const LamMicrostructure *micro, PetscReal turgor);
 #define LAM_TURGOR_TEXT 480
-/* One sentence if the walls of the scene, or of a region, are stretched by more than half; else empty. */
-PetscErrorCode LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT]);
+/* One sentence if the walls of the scene, or of a region, are stretched by more than half by the largest turgor of a
+   block; else empty. Fields of turgor are not evaluated. */
+void LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT]);
+/* Reports it. On rank 0. */
+void LamWarnOfTurgor(const LamReporter *reporter, const LamScene *scene);
 
 #endif

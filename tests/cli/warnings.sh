@@ -1,13 +1,13 @@
 # What is accepted and probably a mistake: one line with file, line, key, value and remedy, in `check` and on stderr.
 . "$(dirname "$0")/common.sh"
 
-# warned COMMAND SCENE WORDS: `check` and the command tell the words once, the command on stderr
+# warned COMMAND SCENE WORDS [OPTION...]: `check` and the command tell the words once, the command on stderr
 warned() {
   expect 0 "$lamella" check "$2"
   [ "$(grep -c "^warning .*$3" out.txt)" = 1 ] || fail "check $2 does not tell \"$3\": $(cat out.txt)"
   expect 0 "$lamella" check "$2" --json
   [ "$(grep -c "\"warnings\": \[\".*$3" out.txt)" = 1 ] || fail "check $2 --json does not tell \"$3\": $(cat out.txt)"
-  expect 0 "$lamella" "$1" "$2" --json --quiet
+  expect 0 "$lamella" "$1" "$2" --json --quiet "${@:4}"
   [ "$(grep -c "^lamella $1: .*$3" err.txt)" = 1 ] || fail "$1 $2 does not tell \"$3\": $(cat err.txt)"
 }
 # silent COMMAND SCENE
@@ -63,7 +63,35 @@ silent process even.yaml
 water 0.7 '0 m/s/MPa' >closed.yaml
 silent process closed.yaml
 
-# turgor beyond what the walls hold: in the scene, in a load, in a region
+# a region that the osmotic pressures do not hold, and a turgor that varies
+block() { # KEYS OF macro
+  water 0.6 | sed "/^process/i\\
+macro:\\
+  mesh: {box: [10 mm, 10 mm], elements: [1, 1]}\\
+  boundary: [{on: bottom, displacement: [0 mm, 0 mm]}]\\
+  $1"
+}
+block 'regions: [{name: skin, where: y > 5, turgor: {pressure: 0.15 MPa}}]' >uneven.yaml
+warned process uneven.yaml \
+  'uneven.yaml:15:57: process.water.osmotic_pressure: 0.6 MPa: with 0.4 MPa outside it holds a turgor of 0.2 MPa, but that of region skin is 0.15 MPa: from the start, turgor rises by up to 0.05 MPa; leave it out for a start in equilibrium'
+block 'regions: [{name: skin, where: y > 5, cell: {wall_thickness: 12 um}}]' >alike.yaml
+silent process alike.yaml
+block 'fields: {turgor: {expression: 0.2 + 0.001 * y, unit: MPa}}' >field.yaml
+warned process field.yaml 'field.yaml:15:57: process.water.osmotic_pressure: 0.6 MPa: holds one turgor, but macro.fields.turgor varies'
+
+# a table of kinetics that ends before the process, one that goes on, and one that fits
+stored() { # TABLE
+  printf 'process:\n  duration: 2 h\n  output: 1 h\n  kinetics: [{of: walls, law: table, time_unit: h, table: %s}]\n' "$1" | soft
+}
+stored '[[0, 1], [1, 0.8]]' >short.yaml
+warned process short.yaml \
+  'short.yaml:11:68: process.kinetics\[1\].table\[2\]: \[1, 0.8\]: the table ends at 1 h, the process at 2 h: in between the factor stays at 0.8; write a pair for the end of the process'
+stored '[[0, 1], [2, 0.8], [3, 0.7]]' >long.yaml
+warned process long.yaml 'long.yaml:11:78: process.kinetics\[1\].table\[3\]: \[3, 0.7\]: is never reached: the process ends at 2 h, the table at 3 h; write a longer'
+stored '[[0, 1], [3, 0.8]]' >through.yaml
+silent process through.yaml
+
+# turgor beyond what the walls hold: in the scene, in a load, in a region, in surroundings, in a map
 inflated() { # TURGOR
   tissue turgor="mode: prescribed, pressure: $1" mesh='along: 6, through: 2' <<'YAML'
 load: [{inflate: true}]
@@ -81,10 +109,21 @@ inflated '0.02 MPa' | sed 's/inflate: true/inflate: true, turgor: 400 kPa/' >loa
 warned rve load.yaml 'load.yaml: load: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %'
 inflated '0.1 MPa' >firm.yaml
 silent rve firm.yaml
-tissue >region.yaml <<'YAML'
+tissue mesh='along: 2, through: 1' >region.yaml <<'YAML'
 macro:
-  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}
+  mesh: {box: [10 mm, 10 mm], elements: [1, 1]}
   boundary: [{on: bottom, displacement: [0 mm, 0 mm]}]
+  steps: 1
   regions: [{name: skin, where: y > 5, turgor: {pressure: 0.4 MPa}}]
 YAML
-expect 0 -o '^warning .*region.yaml:11:33: macro.regions\[1\]: skin: turgor: 0.4 MPa: stretches' "$lamella" check region.yaml
+warned fe2 region.yaml 'region.yaml:12:33: macro.regions\[1\]: skin: turgor: 0.4 MPa: stretches'
+printf 'process:\n  output: 1 h\n  surroundings: [{time: 0 h}, {time: 1 h, turgor: 0.4 MPa}]\n' | soft >rises.yaml
+warned process rises.yaml 'rises.yaml: process.surroundings: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %'
+cat - <<'YAML' | soft >map.yaml
+load: [{ramp: {to: [[1, 0.01], [0, 1]], steps: 1}}]
+strength: {wall: 1 MPa}
+map:
+  x: {quantity: turgor, from: 0 MPa, to: 0.4 MPa, points: 2}
+  y: {quantity: shear, from: 0, to: 0.01, points: 2}
+YAML
+warned map map.yaml 'map.yaml: map: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %' -o map.h5
