@@ -19,7 +19,7 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
 {
   PetscFunctionBeginUser;
   PetscCheck(scene->has_macro, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: macro: missing; a macroscale run needs this block", scene->path);
+             "%s: has no block `macro`, which describes the body", scene->path);
   PetscCall(LamMacroBoundaryNames(&scene->macro, &macro->step));
   macro->scene = scene;
   PetscFunctionReturn(0);

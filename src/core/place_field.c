@@ -57,7 +57,8 @@ PetscErrorCode LamPlaceFieldFromExpression(const char name[], const char text[],
   mupSetExpr(f->parser, f->text);
   (void)Evaluate(f, &count);
   if (mupError(f->parser))
-    snprintf(reason, LAM_PLACE_FIELD_REASON, "is no expression of x and y: %s", mupGetErrorMsg(f->parser));
+    snprintf(reason, LAM_PLACE_FIELD_REASON, "is no expression of x and y: %s; write one, in mm",
+             mupGetErrorMsg(f->parser));
   else if (count != 1)
     snprintf(reason, LAM_PLACE_FIELD_REASON, "is %d expressions; write one", count);
   if (reason[0]) PetscCall(LamPlaceFieldDestroy(field));
@@ -115,7 +116,7 @@ static PetscErrorCode ReadRows(FILE *stream, PetscInt *n, Row **rows, char reaso
     if (*n == MAX_ROWS)
       snprintf(reason, LAM_PLACE_FIELD_REASON, "has more than %d rows", (int)MAX_ROWS);
     else if (!ReadRow(line, &(*rows)[(*n)++]))
-      snprintf(reason, LAM_PLACE_FIELD_REASON, "line %d is not three numbers x, y, value separated by commas",
+      snprintf(reason, LAM_PLACE_FIELD_REASON, "line %d is not three numbers x, y, value; separate them by commas, and write the decimal sign as a point",
                (int)number);
   }
   free(line);
@@ -187,7 +188,8 @@ PetscErrorCode LamPlaceFieldFromTable(const char name[], const char path[], LamP
   *field = NULL;
   reason[0] = '\0';
   if (!stream) {
-    snprintf(reason, LAM_PLACE_FIELD_REASON, "cannot be opened: %s", strerror(errno));
+    snprintf(reason, LAM_PLACE_FIELD_REASON, "cannot be opened: %s; a relative path counts from the folder of the scene",
+             strerror(errno));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscNew(&f));

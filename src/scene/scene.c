@@ -36,6 +36,8 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
   PetscFunctionBeginUser;
   PetscCheck(length <= MAX_FILE_SIZE, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%.200s: larger than %d kB; a scene is a short YAML file", name, (int)MAX_FILE_SIZE / 1024);
+  PetscCheck(strncmp(text, "\x89HDF", 4), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%.200s: is an HDF5 file, no scene; `lamella info` says what it holds", name);
   for (const unsigned char *start = (const unsigned char *)text, *c = start; c < start + length; c += step) {
     PetscCheck((*c >= 0x20 && *c != 0x7F) || *c == '\t' || *c == '\n' || *c == '\r', PETSC_COMM_SELF,
                PETSC_ERR_USER_INPUT, "%.200s: byte %d is 0x%02x, which no text has; a scene is a YAML file", name,

@@ -193,7 +193,7 @@ static PetscErrorCode ReadVector(LamNode *node, const LamKey *key)
 
   PetscFunctionBeginUser;
   PetscCall(CheckKind(node, key, PETSC_FALSE, LAM_NODE_LIST));
-  snprintf(reason, sizeof(reason), "has %d entries", (int)node->count);
+  snprintf(reason, sizeof(reason), "has %d entr%s", (int)node->count, node->count == 1 ? "y" : "ies");
   if (node->count != key->size) PetscCall(FailValue(node, key, PETSC_FALSE, LengthReason(node, reason)));
   for (LamNode *item = node->first; item; item = item->next) PetscCall(ReadSingle(item, key, &node->value));
   PetscFunctionReturn(0);

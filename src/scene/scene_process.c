@@ -281,12 +281,15 @@ static const struct {
 static PetscErrorCode CheckUses(const LamNode *entry, LamKineticLaw law)
 {
   const char *name = LamKineticLawNames[law];
+  char path[LAM_NAME_LENGTH];
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(uses); k++) {
     const LamNode *node = LamNodeFind(entry, uses[k].key);
 
-    LamSceneRequire(node || !(uses[k].need & (1u << law)), entry, uses[k].key, "missing; law: %s needs it", name);
+    snprintf(path, sizeof(path), "process.kinetics[].%s", uses[k].key);
+    LamSceneRequire(node || !(uses[k].need & (1u << law)), entry, uses[k].key, "missing; law: %s needs it, such as %s",
+                    name, LamKeyFind(path)->example);
     LamSceneCheckName(!node || (uses[k].have & (1u << law)), node, "law: %s has no use for it; leave it out", name);
   }
   PetscFunctionReturn(0);

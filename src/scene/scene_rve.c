@@ -158,7 +158,7 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
   scales->stress = C1->value.number[0] + C2->value.number[0];
   PetscCall(LamSceneCheckScale(C1, scales->stress));
   LamSceneCheck(thickness->value.number[0] < scales->length, thickness,
-                "the wall fills the cell; write a thickness less than the apothem");
+                "the wall fills the cell; write a thickness less than the apothem (%s)", apothem->text);
   PetscCall(LamSceneReadWall(LamNodeFind(root, "rve.wall"), scales, NULL, &micro->wall));
   micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
   PetscCall(LamSceneFill(root, scales, LamScene, scene));

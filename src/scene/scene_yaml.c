@@ -120,7 +120,7 @@ static PetscErrorCode Next(Reader *reader)
   error = fy_diag_errors_iterate(reader->diagnostics, &previous);
   place.line = error ? PetscMax(error->line, 1) : 1;
   place.column = error ? PetscMax(error->column, 1) : 1;
-  LamSceneCheck(PETSC_FALSE, &place, "not YAML: %.200s; check brackets, quotes and indentation in this line",
+  LamSceneCheck(PETSC_FALSE, &place, "not YAML: %.200s; check brackets, quotes and indentation in this line and above",
                 error && error->msg ? error->msg : "it cannot be read");
   PetscFunctionReturn(0);
 }

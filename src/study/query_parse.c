@@ -61,7 +61,8 @@ static PetscBool ReadDeformation(const char text[], PetscReal F[9], const char *
 
   if (!ReadNumbers(text, numbers, &n, rest, problem)) return PETSC_FALSE;
   if (n != 4 && n != 9) {
-    snprintf(problem, LAM_PROBLEM_LENGTH, "%d number%s; " WANTED, n, n == 1 ? "" : "s");
+    snprintf(problem, LAM_PROBLEM_LENGTH, "%d number%s%s; " WANTED, n, n == 1 ? "" : "s",
+             strchr(text, ',') ? " (the decimal sign is the point)" : "");
     return PETSC_FALSE;
   }
   for (int i = 0; i < 9; i++) F[i] = n == 9 ? numbers[i] : i == 8;

@@ -85,7 +85,7 @@ static void Sentence(const char at[], const char key[], PetscReal stretch, Petsc
   else
     snprintf(words, sizeof(words), "stretches the walls of free tissue by about %.0f %%",
              (double)(100.0 * (stretch - 1.0)));
-  snprintf(text, LAM_TURGOR_TEXT, "%.159s: %.120s: %.4g MPa: %s; check its unit, and thickness and moduli of the walls",
+  snprintf(text, LAM_TURGOR_TEXT, "%.159s: %.120s: %.6g MPa: %s; check its unit, and thickness and moduli of the walls",
            at, key, (double)MPa, words);
 }
 
