@@ -116,8 +116,10 @@ static PetscErrorCode ReadRows(FILE *stream, PetscInt *n, Row **rows, char reaso
     if (*n == MAX_ROWS)
       snprintf(reason, LAM_PLACE_FIELD_REASON, "has more than %d rows", (int)MAX_ROWS);
     else if (!ReadRow(line, &(*rows)[(*n)++]))
-      snprintf(reason, LAM_PLACE_FIELD_REASON, "line %d is not three numbers x, y, value; separate them by commas, and write the decimal sign as a point",
-               (int)number);
+      snprintf(
+          reason, LAM_PLACE_FIELD_REASON,
+          "line %d is not three numbers x, y, value; separate them by commas, and write the decimal sign as a point",
+          (int)number);
   }
   free(line);
   PetscFunctionReturn(0);
@@ -188,8 +190,8 @@ PetscErrorCode LamPlaceFieldFromTable(const char name[], const char path[], LamP
   *field = NULL;
   reason[0] = '\0';
   if (!stream) {
-    snprintf(reason, LAM_PLACE_FIELD_REASON, "cannot be opened: %s; a relative path counts from the folder of the scene",
-             strerror(errno));
+    snprintf(reason, LAM_PLACE_FIELD_REASON,
+             "cannot be opened: %s; a relative path counts from the folder of the scene", strerror(errno));
     PetscFunctionReturn(0);
   }
   PetscCall(PetscNew(&f));

@@ -205,8 +205,8 @@ static PetscErrorCode BuildAxis(const LamNode *block, const LamScene *scene, Axi
   PetscCall(LamSceneFill(block, &scene->scales, LamMapAxis, axis));
   PetscCall(ReadEnd(nodes->from, axis->quantity, &scene->scales, &axis->from));
   PetscCall(ReadEnd(nodes->to, axis->quantity, &scene->scales, &axis->to));
-  LamSceneCheck(axis->from < axis->to, nodes->to, "is not larger than from (%s in line %d); exchange them", nodes->from->text,
-                nodes->from->line);
+  LamSceneCheck(axis->from < axis->to, nodes->to, "is not larger than from (%s in line %d); exchange them",
+                nodes->from->text, nodes->from->line);
   LamSceneCheck(!axis->is_log || axis->from > 0, LamNodeFind(block, "spacing"),
                 "needs values above 0; from is %s in line %d", nodes->from->text, nodes->from->line);
   PetscCall(CheckAxis(nodes, scene, axis));
