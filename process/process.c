@@ -381,6 +381,8 @@ static PetscErrorCode Inflate(LamProcess process, PetscBool *ok)
     segment->P[i] = (LamRamp){0, 0};
   }
   for (int k = 0; k < 3; k++) segment->given[in_plane[k]] = PETSC_TRUE;
+  if (process->spec->area == LAM_AREA_INFLATED)
+    segment->given[1] = PETSC_FALSE; /* a diagonal F0 keeps components apart */
   from = Here(process, none);
   from.turgor = (LamRamp){0, 0};
   PetscCall(LamProcessSettle(process, LAM_SETTLE_TURGOR, &from, ok));

@@ -83,6 +83,14 @@ static void EndAtHistories(LamProcess process, LamSegment *segment)
     }
 }
 
+/* A stress that a part prescribes, per area at rest. */
+static PetscReal Prescribed(LamProcess process, const LamProcessLeg *leg, int i)
+{
+  const PetscReal *F0 = process->inflation, J0 = F0[0] * F0[4] * F0[8];
+
+  return leg->control.P[i] * (process->spec->area == LAM_AREA_INFLATED ? J0 / F0[4 * (i % 3)] : 1);
+}
+
 static void Load(LamProcess process, LamSegment *segment)
 {
   const LamProcessLeg *leg = Leg(process);
@@ -90,7 +98,7 @@ static void Load(LamProcess process, LamSegment *segment)
   const PetscReal share = moves ? (segment->start - process->leg_start) / leg->duration : 1;
 
   for (int i = 0; i < 9; i++) {
-    const PetscReal dF = leg->F[i] - process->leg_F[i], dP = leg->control.P[i] - process->leg_P[i];
+    const PetscReal dF = leg->F[i] - process->leg_F[i], dP = Prescribed(process, leg, i) - process->leg_P[i];
 
     segment->given[i] = leg->control.given[i];
     segment->F[i] = (LamRamp){process->leg_F[i] + share * dF, moves ? dF / leg->duration : 0};
@@ -120,7 +128,7 @@ void LamProcessEndSegment(LamProcess process, const PetscReal P[9])
   PetscReal stress[9];
 
   if (IsOver(process) || process->tissue.time < process->leg_start + leg->duration - LamTimeTolerance(process)) return;
-  for (int i = 0; i < 9; i++) stress[i] = leg->control.given[i] ? leg->control.P[i] : P[i];
+  for (int i = 0; i < 9; i++) stress[i] = leg->control.given[i] ? Prescribed(process, leg, i) : P[i];
   if (++process->leg == process->spec->leg_count) {
     process->leg = 0;
     process->cycle++;

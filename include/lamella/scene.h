@@ -260,6 +260,7 @@ typedef struct {
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];
   LamLoadControl control;
+  LamArea area;                     /* that readings' stresses are per, with inflate */
   PetscBool inflate;                /* first raise the turgor with only rigid motions and symmetry constrained */
   PetscInt steps;                   /* load steps after inflation, of the whole program */
   PetscInt leg_count;               /* 0: the parameter increases from 0 to 1 in `steps` */
@@ -347,7 +348,7 @@ typedef struct {
   PetscReal duration;       /* s; 0: a jump */
   PetscReal output;         /* s; interval between outputs in this leg; 0: that of the process */
   PetscReal F[9];           /* relative to the inflated state; an initial guess where P is given */
-  LamStressControl control; /* P: per reference area before inflation */
+  LamStressControl control; /* P: per LamProcessSpec.area */
   PetscReal load;           /* body: load parameter at the end of the leg */
 } LamProcessLeg;
 
@@ -355,7 +356,8 @@ typedef struct {
 typedef struct {
   PetscReal duration, output; /* s; output: interval between outputs */
   PetscReal tolerance;        /* relative tolerance of the time integration */
-  PetscBool inflate;          /* the program is relative to the tissue that is stress-free under its turgor */
+  PetscBool inflate;          /* the program is relative to the tissue that is stress-free under its turgor, ... */
+  LamArea area;               /* ... and its P is per this area */
   PetscBool has_water;
   LamWaterSpec water;
   LamKinetics kinetics[LAM_CHANGING_COUNT]; /* these own their tables */

@@ -116,6 +116,15 @@ PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char sum
 /* Prints, on rank 0, what is wrong with the command line: "lamella COMMAND: ..."; returns PETSC_FALSE. */
 PetscBool LamUsageError(const char command[], int *exit_status, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 
+#define LAM_MOST_STRAINS 16
+/* What --readings and --at ask for. */
+typedef struct {
+  PetscBool readings;
+  const char *at; /* text of the strains; NULL: none */
+  PetscInt count;
+  PetscReal strain[LAM_MOST_STRAINS];
+} LamTestOptions;
+
 /* ---- console.c: messages of a study, and a bar on stderr if it is a terminal ---- */
 typedef struct {
   const char *command; /* "build" */
@@ -124,6 +133,7 @@ typedef struct {
   PetscBool warned;       /* of localisation, once */
   PetscReal start, drawn; /* of the first update, of the bar on the screen; 0: none */
   PetscInt64 first;       /* done at the first update */
+  LamTestOptions test;
 } LamConsole;
 LamReporter LamConsoleReporter(LamConsole *console); /* borrows it */
 void LamConsoleClear(LamConsole *console);           /* removes the bar */
@@ -157,12 +167,19 @@ PetscErrorCode LamFailurePrint(const LamFailure *failure, const LamScales *scale
 PetscErrorCode LamOnsetPrint(const LamOnset *onset, const LamScales *scales, PetscBool json);
 
 /* ---- test_print.c ---- */
-#define LAM_MOST_STRAINS 16
+#define LAM_TEST_OPTIONS(options, when)                                                                                \
+  {0, "readings", LAM_OPTION_FLAG, NULL, "modulus, peak and energy, read off the curve" when, &(options).readings},    \
+  {                                                                                                                    \
+    0, "at", LAM_OPTION_TEXT, "STRAIN,...", "moduli at these strains of the curve, too (includes --readings)",         \
+        &(options).at                                                                                                  \
+  }
+/* Reads what --at says; PETSC_FALSE: it is something else, as LamUsageError has said. */
+PetscBool LamTestReadOptions(const char command[], LamTestOptions *options, int *exit_status);
+/* {"F": [...], "P": [...]}, as LamTestMeasures gives them. */
+json_t *LamFromInflatedToJSON(const PetscReal F[9], const PetscReal P[9], const LamScales *scales);
 /* What is read off the curve of a mechanical test, and its moduli at strains; in JSON one object, none without a curve.
  */
-PetscErrorCode LamTestPrint(const LamTest *test, PetscInt count, const PetscReal strain[], PetscBool json);
-/* Reads numbers between commas, at most LAM_MOST_STRAINS; PETSC_FALSE: the text is something else. */
-PetscBool LamTestReadStrains(const char text[], PetscInt *count, PetscReal strain[LAM_MOST_STRAINS]);
+PetscErrorCode LamTestPrint(const LamTest *test, const LamTestOptions *options, PetscBool json);
 
 /* ---- cmd_plot.c ---- */
 /* The names that `plot --field` knows, by kind of file: some occur in several. */

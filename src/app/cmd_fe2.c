@@ -31,7 +31,7 @@ static PetscErrorCode Report(const LamFE2Run *run, const LamConsole *console, in
   *exit_status = run->reason == LAM_MACRO_NOT_CONVERGED ? LAM_EXIT_UNSOLVED : status;
   if (LamIsFirst(run->comm) && status) TellHowToGoOn(run);
   if (!LamIsFirst(run->comm) || run->stopped) PetscFunctionReturn(0);
-  if (!console->json) LamFE2ReportEnd(run);
+  PetscCall(LamFE2ReportEnd(run, console));
   if (run->reason == LAM_MACRO_NOT_CONVERGED) fprintf(stderr, "lamella fe2: %s: %s\n", run->scene_path, run->message);
   PetscFunctionReturn(0);
 }
@@ -74,17 +74,21 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        &run.certify},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on behind the last complete step of OUT.h5, where there is one",
        &run.resume},
+      LAM_TEST_OPTIONS(console.test, " of the loaded side"),
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per load step on stdout", &console.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(
-      args, "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify] [--resume] [--json] [--quiet]",
-      "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done, exit_status));
+  PetscCall(LamOptionsParse(args,
+                            "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify] [--readings] [--at "
+                            "STRAIN,...]\n           [--resume] [--json] [--quiet]",
+                            "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
+                            exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("fe2", response, &run, exit_status) || !LamFE2CheckPaths("fe2", &run, exit_status))
+  if (!LamFE2ChooseResponse("fe2", response, &run, exit_status) || !LamFE2CheckPaths("fe2", &run, exit_status) ||
+      !LamTestReadOptions("fe2", &console.test, exit_status))
     PetscFunctionReturn(0);
   if (run.certify && run.response == LAM_FE2_DIRECT &&
       !LamUsageError("fe2", exit_status,
@@ -96,7 +100,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   run.reporter = LamConsoleReporter(&console);
   run.step = LamFE2ReportStep;
   run.step_ctx = &console;
-  run.all_fields = (PetscBool)!console.json;
+  run.all_fields = (PetscBool)(!console.json || console.test.readings); /* the summary has the curve */
   console.has_rows = (PetscBool)(!console.json && isatty(STDOUT_FILENO));
   PetscCall(Solve(&run, &console, exit_status));
   PetscCall(LamFE2Destroy(&run));

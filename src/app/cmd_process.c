@@ -44,6 +44,14 @@ static void AddRatios(json_t *o, const PetscReal ratio[], LamEvent event)
 
 /* ---- reports of a material point ---- */
 
+static json_t *FromInflated(const LamProcessStudy *study, const LamProcessState *state)
+{
+  PetscReal F[9], P[9];
+
+  LamProcessMeasures(study->scene, state, F, P);
+  return LamFromInflatedToJSON(F, P, &study->scene->scales);
+}
+
 static PetscErrorCode PrintPointObject(const LamProcessStudy *study, const LamProcessState *state)
 {
   const LamScales *scales = &study->scene->scales;
@@ -54,7 +62,7 @@ static PetscErrorCode PrintPointObject(const LamProcessStudy *study, const LamPr
   PetscCall(LamResponseToJSON(&state->response, scales, study->history.count, PETSC_FALSE, &o));
   json_object_update_new(
       o, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "time", LamJSONReal(state->time), "temperature",
-                   LamJSONReal(state->temperature), "F_inflated", LamJSONReals(9, state->F, 1), "water",
+                   LamJSONReal(state->temperature), "from_inflated", FromInflated(study, state), "water",
                    LamJSONReal(state->water), "osmotic_pressure", LamJSONReal(state->osmotic * MPa), "outside",
                    LamJSONReal(state->outside * MPa), "firmness", LamJSONReal(state->firmness * MPa), "walls",
                    LamJSONReal(state->walls), "factors", FactorsToJSON(&study->scene->process, state->factor)));
@@ -128,6 +136,18 @@ static void WarnOfIndicators(const LamProcessStudy *study)
         (int)doubtful);
 }
 
+static PetscErrorCode ReportPointTest(const LamProcessStudy *study, const LamConsole *console)
+{
+  LamTest test;
+
+  PetscFunctionBeginUser;
+  if (!console->test.readings) PetscFunctionReturn(0);
+  PetscCall(LamTestOfProcess(study->scene, study->history.count, study->history.states, &test));
+  PetscCall(LamTestPrint(&test, &console->test, console->json));
+  PetscCall(LamTestDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportPointEnd(void *ctx, const LamProcessStudy *study)
 {
   LamConsole *console = (LamConsole *)ctx;
@@ -139,6 +159,7 @@ static PetscErrorCode ReportPointEnd(void *ctx, const LamProcessStudy *study)
   if (!console->quiet) WarnOfIndicators(study);
   if (study->reason == LAM_PROCESS_ENDED)
     fprintf(stderr, "lamella process: %s: %s\n", study->scene->path, study->message);
+  PetscCall(ReportPointTest(study, console));
   if (console->json) PetscFunctionReturn(0);
   PetscCall(LamProcessGetCounts(study->process, &counts));
   printf("%d steps of time, %d questions, %.3g s\n", (int)counts.steps, (int)counts.questions,
@@ -219,12 +240,14 @@ static PetscErrorCode ReportBody(void *ctx, const LamBodyStudy *study, const Lam
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReportBodyEnd(const LamBodyStudy *study)
+static PetscErrorCode ReportBodyEnd(const LamBodyStudy *study, const LamConsole *console)
 {
   const LamFE2Run *fe2 = &study->fe2;
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
+  PetscCall(LamFE2ReportTest(fe2, console));
+  if (console->json) PetscFunctionReturn(0);
   PetscCall(LamBodyGetCounts(study->body, &counts));
   printf("%d steps of time, %d evaluations of the body, %lld queries, %lld solves, %.3g s; response %s\n",
          (int)counts.steps, (int)counts.questions, (long long)fe2->totals.queries, (long long)fe2->totals.solves,
@@ -273,7 +296,7 @@ static PetscErrorCode SolveBody(LamBodyStudy *study, LamConsole *console, int *e
   *exit_status = StatusOf(study->reason);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, exit_status, 1, MPI_INT, MPI_MAX, fe2->comm));
   if (!LamAppIsRoot() || fe2->stopped) PetscFunctionReturn(0);
-  if (!console->json) PetscCall(ReportBodyEnd(study));
+  PetscCall(ReportBodyEnd(study, console));
   if (study->reason == LAM_PROCESS_ENDED) fprintf(stderr, "lamella process: %s: %s\n", fe2->scene_path, study->message);
   PetscFunctionReturn(0);
 }
@@ -309,17 +332,22 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
       {0, "frames", LAM_OPTION_FROM_2, "N",
        "at a material point: keep the cells at N states evenly spread, for a film (default: at events, start and end)",
        &frames},
+      LAM_TEST_OPTIONS(console.test, " of what the program drives"),
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &console.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(
-      args, "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--json]\n               [--quiet]",
-      "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
+  PetscCall(LamOptionsParse(args,
+                            "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--readings]\n        "
+                            "       [--at STRAIN,...] [--json] [--quiet]",
+                            "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (!LamFE2ChooseResponse("process", response, &run, exit_status)) PetscFunctionReturn(0);
+  if (!LamFE2ChooseResponse("process", response, &run, exit_status) ||
+      !LamTestReadOptions("process", &console.test, exit_status))
+    PetscFunctionReturn(0);
+  run.all_fields = console.test.readings; /* of a body: the summary has the curve */
   PetscCall(args->start(args));
   run.comm = PETSC_COMM_WORLD;
   run.reporter = LamConsoleReporter(&console);

@@ -14,9 +14,6 @@ typedef struct {
   LamConsole console; /* the reporter's ctx; first */
   const char *scene_path;
   PetscBool tangent;
-  const char *at; /* strains at which moduli are read off; NULL: none */
-  PetscInt at_count;
-  PetscReal strain[LAM_MOST_STRAINS];
   LamRVERun run;
 } Command;
 
@@ -94,14 +91,10 @@ static PetscErrorCode SetCellDifference(json_t *object, const LamRVERun *run, co
 static void SetFromInflated(json_t *object, const LamRVERun *run, const LamResponse *response)
 {
   PetscReal F[9], P[9];
-  json_t *test;
 
   if (!run->scene->inflate || !LamResponseHasFields(response)) return;
-  test = json_object();
   LamTestMeasures(&run->test, response, F, P);
-  json_object_set_new(test, "F", LamJSONReals(9, F, 1));
-  json_object_set_new(test, "P", LamJSONReals(9, P, run->scene->scales.stress * 1e-6));
-  json_object_set_new(object, "from_inflated", test);
+  json_object_set_new(object, "from_inflated", LamFromInflatedToJSON(F, P, &run->scene->scales));
 }
 
 static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, const LamResponse responses[2])
@@ -147,7 +140,7 @@ static PetscErrorCode ReportEnd(const Command *command)
   PetscFunctionBeginUser;
   if (run->find_onset) PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, json));
   if (run->find_failure) PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, json));
-  if (run->readings) PetscCall(LamTestPrint(&run->test, command->at_count, command->strain, json));
+  if (run->readings) PetscCall(LamTestPrint(&run->test, &command->console.test, json));
   if (json) PetscFunctionReturn(0);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " states solved, %" PetscInt_FMT " failed, %.3g s\n",
          run->solved - run->failed, run->scene->load_count, run->failed, LamClock() - run->start);
@@ -235,11 +228,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
        &run->find_failure},
       {0, "global", LAM_OPTION_FLAG, NULL,
        "contact: start each state from the undeformed tissue, too, and take that of lowest energy", &run->global},
-      {0, "readings", LAM_OPTION_FLAG, NULL,
-       "modulus, peak and energy, read off the stress-strain curve (always where the load begins with inflate)",
-       &run->readings},
-      {0, "at", LAM_OPTION_TEXT, "STRAIN,...", "moduli at these strains of the curve, too (includes --readings)",
-       &command.at},
+      LAM_TEST_OPTIONS(command.console.test, " (always where the load begins with inflate)"),
       {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run->no_estimate},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run->monitor},
@@ -255,12 +244,8 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
                       "Solves the representative volume element along the scene's load.", options, 1,
                       &command.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
-  if (command.at && !LamTestReadStrains(command.at, &command.at_count, command.strain)) {
-    (void)LamUsageError("rve", exit_status, "--at %s: give at most %d strains, such as --at 0.01,0.05", command.at,
-                        LAM_MOST_STRAINS);
-    PetscFunctionReturn(0);
-  }
-  if (command.at) run->readings = PETSC_TRUE;
+  if (!LamTestReadOptions("rve", &command.console.test, exit_status)) PetscFunctionReturn(0);
+  run->readings = command.console.test.readings;
   if (run->find_onset) run->second_mesh = PETSC_TRUE;
   PetscCall(args->start(args));
   if (LamAppIsRoot()) {

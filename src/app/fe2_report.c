@@ -227,16 +227,35 @@ void LamSummaryPrint(const json_t *summary)
   printf("  %-18s %.4g N mm/mm\n", "work", Number(summary, "work"));
 }
 
-void LamFE2ReportEnd(const LamFE2Run *run)
+PetscErrorCode LamFE2ReportTest(const LamFE2Run *run, const LamConsole *console)
+{
+  LamTest test;
+
+  PetscFunctionBeginUser;
+  if (!console->test.readings) PetscFunctionReturn(0);
+  PetscCall(LamSummaryTest(&run->summary, &test));
+  PetscCall(LamTestPrint(&test, &console->test, console->json));
+  PetscCall(LamTestDestroy(&test));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run, const LamConsole *console)
 {
   const LamFE2Totals *totals = &run->totals;
-  json_t *summary = LamSummaryToJSON(&run->summary);
+  json_t *summary;
 
-  LamSummaryPrint(summary);
-  json_decref(summary);
+  PetscFunctionBeginUser;
+  if (!console->json) {
+    summary = LamSummaryToJSON(&run->summary);
+    LamSummaryPrint(summary);
+    json_decref(summary);
+  }
+  PetscCall(LamFE2ReportTest(run, console));
+  if (console->json) PetscFunctionReturn(0);
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s, of these %.2g s for checkpoints; response %s\n",
          totals->steps, totals->newton_iterations, (long long)totals->queries, (long long)totals->hits,
          (long long)totals->solves, (long long)totals->failures, LamClock() - run->start, (double)run->all_save_seconds,
          LamFE2ResponseNames[run->response]);
+  PetscFunctionReturn(0);
 }

@@ -25,6 +25,8 @@ PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroS
 /* The columns of the reactions: names, or numbers in N per mm of thickness. */
 void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names);
 /* Prints summary and totals. */
-void LamFE2ReportEnd(const LamFE2Run *run);
+PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run, const LamConsole *console);
+/* What is read off the curve of the loaded side, if asked for. */
+PetscErrorCode LamFE2ReportTest(const LamFE2Run *run, const LamConsole *console);
 
 #endif

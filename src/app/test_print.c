@@ -1,117 +1,106 @@
 /*
-  Readings of a mechanical test, human-readable and as JSON. Stresses in MPa, energies in kJ/m^3.
+  Readings of a mechanical test: the options that ask for them, and what is printed.
 */
 #include "app.h"
 #include "mechanical_test.h"
 #include <math.h>
 #include <stdlib.h>
 
-static void SetMark(json_t *object, const char name[], LamTestMark mark, PetscReal MPa)
+json_t *LamFromInflatedToJSON(const PetscReal F[9], const PetscReal P[9], const LamScales *scales)
 {
-  json_t *o = isfinite(mark.strain) ? json_object() : json_null();
-
-  if (isfinite(mark.strain)) {
-    json_object_set_new(o, "strain", LamJSONReal(mark.strain));
-    json_object_set_new(o, "stress", LamJSONReal(mark.stress * MPa));
-  }
-  json_object_set_new(object, name, o);
+  return json_pack("{s:o, s:o}", "F", LamJSONReals(9, F, 1), "P", LamJSONReals(9, P, scales->stress * 1e-6));
 }
 
-static PetscErrorCode PrintObject(const LamTest *test, const LamTestReadings *r, json_t *at, PetscReal MPa)
-{
-  const int row = test->component / 3 + 1, column = test->component % 3 + 1;
-  json_t *o = json_object(), *object = json_object();
-  char component[3] = {(char)('0' + row), (char)('0' + column), '\0'};
+/* Units of stress, strain and energy, and of energy the factor. */
+typedef struct {
+  const char *stress, *strain, *energy;
+  PetscReal factor;
+} Units;
 
-  PetscFunctionBeginUser;
-  json_object_set_new(o, "component", json_string(component));
-  if (test->scene->inflate) json_object_set_new(o, "F_inflated", LamJSONReals(9, test->F0, 1));
-  json_object_set_new(o, "reference", json_string(LamAreaNames[test->scene->area]));
-  json_object_set_new(o, "modulus", LamJSONReal(r->modulus * MPa));
-  json_object_set_new(o, "poisson", LamJSONReal(r->poisson));
-  SetMark(o, "bioyield", r->bioyield, MPa);
-  SetMark(o, "peak", r->peak, MPa);
-  json_object_set_new(o, "peak_passed", json_boolean(r->passed));
-  json_object_set_new(o, "energy_to_peak", LamJSONReal(r->energy_to_peak * MPa * 1e3));
-  json_object_set_new(o, "work", LamJSONReal(r->work * MPa * 1e3));
-  json_object_set_new(o, "returned", LamJSONReal(r->returned * MPa * 1e3));
-  json_object_set_new(o, "at", at);
-  json_object_set_new(object, "test", o);
-  PetscCall(LamPrintJSON(object));
-  PetscFunctionReturn(0);
+static Units UnitsOf(const LamTest *test)
+{
+  return test->is_force ? (Units){"N/mm", " mm", "N mm/mm", test->unit}
+                        : (Units){"MPa", "", "kJ/m^3", test->unit * 1e3};
 }
 
-static void PrintTable(const LamTest *test, const LamTestReadings *r, PetscReal MPa)
+static void PrintCurve(const LamTest *test)
 {
   const int row = test->component / 3 + 1, column = test->component % 3 + 1;
-  const PetscReal kJ = MPa * 1e3;
 
-  printf("test: P%d%d over F%d%d%s", row, column, row, column, row == column ? " - 1" : "");
-  if (test->scene->inflate)
+  if (test->side)
+    printf("test: force on %s over its displacement%s", test->side,
+           test->is_force ? "" : ", both over edges of the box: apparent stress and strain");
+  else
+    printf("test: P%d%d over F%d%d%s", row, column, row, column, row == column ? " - 1" : "");
+  if (test->inflated && !test->is_force)
     printf(", from the inflated tissue (stretches %.4f and %.4f), per area of the %s", (double)test->F0[0],
-           (double)test->F0[4], test->scene->area == LAM_AREA_INFLATED ? "inflated tissue" : "tissue at rest");
-  printf("\n  modulus %.4g MPa at %.4g", (double)(r->modulus * MPa), (double)test->points[0].strain);
-  if (isfinite(r->poisson)) printf(", Poisson's ratio %.3f", (double)r->poisson);
-  putchar('\n');
-  if (isfinite(r->bioyield.strain))
-    printf("  bioyield %.4g MPa at %.4g\n", (double)(r->bioyield.stress * MPa), (double)r->bioyield.strain);
-  printf("  %s %.4g MPa at %.4g, energy to it %.4g kJ/m^3\n", r->passed ? "peak" : "no peak; largest",
-         (double)(r->peak.stress * MPa), (double)r->peak.strain, (double)(r->energy_to_peak * kJ));
-  printf("  work %.4g kJ/m^3", (double)(r->work * kJ));
-  if (r->returned != 0)
-    printf(", of which %.4g kJ/m^3 come back: hysteresis %.2f %%", (double)(r->returned * kJ),
-           (double)(100 * (1 - r->returned / r->work)));
+           (double)test->F0[4], test->area == LAM_AREA_INFLATED ? "inflated tissue" : "tissue at rest");
   putchar('\n');
 }
 
-static void PrintAt(const LamTest *test, PetscReal strain, PetscReal MPa)
+static void PrintMark(const LamTest *test, const char name[], LamTestMark mark)
 {
+  const Units units = UnitsOf(test);
+
+  printf("  %s %.4g %s at %.4g%s", name, (double)(mark.stress * test->unit), units.stress, (double)mark.strain,
+         units.strain);
+}
+
+static void PrintTable(const LamTest *test)
+{
+  const Units units = UnitsOf(test);
+  LamTestReadings r;
+
+  LamTestRead(test, &r);
+  PrintCurve(test);
+  printf("  modulus %.4g MPa at %.4g%s", (double)(r.modulus * test->unit), (double)test->points[0].strain,
+         units.strain);
+  if (isfinite(r.poisson)) printf(", Poisson's ratio %.3f", (double)r.poisson);
+  putchar('\n');
+  if (isfinite(r.bioyield.strain)) {
+    PrintMark(test, "bioyield", r.bioyield);
+    putchar('\n');
+  }
+  PrintMark(test, r.passed ? "peak" : "no peak; largest", r.peak);
+  printf(", energy to it %.4g %s\n", (double)(r.energy_to_peak * units.factor), units.energy);
+  printf("  work %.4g %s", (double)(r.work * units.factor), units.energy);
+  if (r.returned != 0)
+    printf(", of which %.4g %s come back: hysteresis %.2f %%", (double)(r.returned * units.factor), units.energy,
+           (double)(100 * (1 - r.returned / r.work)));
+  putchar('\n');
+}
+
+static void PrintAt(const LamTest *test, PetscReal strain)
+{
+  const Units units = UnitsOf(test);
   PetscReal stress, secant, tangent;
 
   if (LamTestAt(test, strain, &stress, &secant, &tangent))
-    printf("  at %.4g: stress %.4g MPa, secant modulus %.4g MPa, tangent modulus %.4g MPa\n", (double)strain,
-           (double)(stress * MPa), (double)(secant * MPa), (double)(tangent * MPa));
+    printf("  at %.4g%s: %s %.4g %s, secant modulus %.4g MPa, tangent modulus %.4g MPa\n", (double)strain, units.strain,
+           test->is_force ? "force" : "stress", (double)(stress * test->unit), units.stress,
+           (double)(secant * test->unit), (double)(tangent * test->unit));
   else
-    printf("  at %.4g: the curve does not come there\n", (double)strain);
+    printf("  at %.4g%s: the curve does not come there\n", (double)strain, units.strain);
 }
 
-static json_t *AtToJSON(const LamTest *test, PetscReal strain, PetscReal MPa)
+PetscErrorCode LamTestPrint(const LamTest *test, const LamTestOptions *options, PetscBool json)
 {
-  PetscReal stress = NAN, secant = NAN, tangent = NAN;
-  json_t *o = json_object();
-
-  (void)LamTestAt(test, strain, &stress, &secant, &tangent);
-  json_object_set_new(o, "strain", LamJSONReal(strain));
-  json_object_set_new(o, "stress", LamJSONReal(stress * MPa));
-  json_object_set_new(o, "secant_modulus", LamJSONReal(secant * MPa));
-  json_object_set_new(o, "tangent_modulus", LamJSONReal(tangent * MPa));
-  return o;
-}
-
-PetscErrorCode LamTestPrint(const LamTest *test, PetscInt count, const PetscReal strain[], PetscBool json)
-{
-  const PetscReal MPa = test->scene->scales.stress * 1e-6;
-  LamTestReadings readings;
-  json_t *at;
-
   PetscFunctionBeginUser;
   if (test->count < 2) {
-    if (!json) printf("test: there is no curve: fewer than two states of a changing component of F or P are solved\n");
+    if (!json) printf("test: there is no curve: fewer than two states of what a load drives are solved\n");
     PetscFunctionReturn(0);
   }
-  LamTestRead(test, &readings);
-  if (!json) {
-    PrintTable(test, &readings, MPa);
-    for (PetscInt k = 0; k < count; k++) PrintAt(test, strain[k], MPa);
+  if (json) {
+    PetscCall(LamPrintJSON(json_pack("{s:o}", "test", LamTestToJSON(test, options->count, options->strain))));
     PetscFunctionReturn(0);
   }
-  at = json_array();
-  for (PetscInt k = 0; k < count; k++) json_array_append_new(at, AtToJSON(test, strain[k], MPa));
-  PetscCall(PrintObject(test, &readings, at, MPa));
+  PrintTable(test);
+  for (PetscInt k = 0; k < options->count; k++) PrintAt(test, options->strain[k]);
   PetscFunctionReturn(0);
 }
 
-PetscBool LamTestReadStrains(const char text[], PetscInt *count, PetscReal strain[LAM_MOST_STRAINS])
+/* Numbers between commas; PETSC_FALSE: the text is something else. */
+static PetscBool ReadStrains(const char text[], PetscInt *count, PetscReal strain[LAM_MOST_STRAINS])
 {
   char *end;
 
@@ -123,5 +112,15 @@ PetscBool LamTestReadStrains(const char text[], PetscInt *count, PetscReal strai
     if (*end != ',') return PETSC_FALSE;
     text = end + 1;
   }
+  return PETSC_FALSE;
+}
+
+PetscBool LamTestReadOptions(const char command[], LamTestOptions *options, int *exit_status)
+{
+  if (!options->at) return PETSC_TRUE;
+  options->readings = PETSC_TRUE;
+  if (ReadStrains(options->at, &options->count, options->strain)) return PETSC_TRUE;
+  (void)LamUsageError(command, exit_status, "--at %s: give at most %d strains, such as --at 0.01,0.05", options->at,
+                      LAM_MOST_STRAINS);
   return PETSC_FALSE;
 }

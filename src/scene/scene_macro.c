@@ -46,6 +46,10 @@ static const LamKey program_keys[] = {
     {BOOL("macro.inflate"), INTO(LamMacroSpec, inflate), .default_words = "true with turgor, else false",
      .help = "First bring turgor up with only rigid motions held; displacements then count from there. With law "
              "`contact` it needs a cohesion: nothing else holds free tissue together."},
+    {NAME_OF("macro.reference", LamAreaNames, LAM_AREA_COUNT), INTO(LamMacroSpec, area), .default_value = "rest",
+     .help =
+         "With `inflate`: whether stress that is read off the curve of a box is per area at rest or of the inflated "
+         "body. Tractions are per area at rest."},
     {INTEGER("macro.steps"), INTO(LamMacroSpec, steps), FROM(1), TO(10000),
      .default_words = "10; with `program`: that of its parts", .example = "10",
      .help = "Equal steps of the load parameter from 0 to 1, after inflation."},
@@ -225,6 +229,8 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
   spec->steps = DEFAULT_STEPS;
   PetscCall(LamSceneFill(block, &scene->scales, LamMacroSpec, spec));
   PetscCall(CheckInflation(block, scene));
+  LamSceneCheck(spec->area != LAM_AREA_INFLATED || spec->inflate, LamNodeFind(block, "reference"),
+                "needs the inflated body; write a turgor, and no inflate: false");
   PetscCall(LamSceneBuildBoundaries(root, scene));
   PetscCall(BuildProgram(block, spec));
   PetscCall(BuildControl(LamNodeFind(block, "control"), scene));

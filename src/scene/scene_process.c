@@ -21,6 +21,10 @@ static const LamKey process_keys[] = {
     {BOOL("process.inflate"), INTO(LamProcessSpec, inflate), .default_words = "true with turgor, else false",
      .help = "First find the tissue free of stress under its turgor; deformation then counts from there. Of a body "
              "`macro.inflate` says it."},
+    {NAME_OF("process.reference", LamAreaNames, LAM_AREA_COUNT), INTO(LamProcessSpec, area), .default_value = "rest",
+     .help =
+         "With `inflate`: whether P, given and told, is per area of the tissue at rest or of the inflated one. At one "
+         "material point."},
     {REAL("process.opening"), INTO(LamProcessSpec, opening), ABOVE(0), BELOW(1), .default_value = "0.01",
      .example = "0.02",
      .help = "What the volume between cells in contact, over that of the tissue, has grown by since the start when "
@@ -118,7 +122,7 @@ static const LamKey process_keys[] = {
      .help = "Deformation gradient at its end, from the inflated tissue; `free` where P is given."},
     {STRESS_TENSOR("process.program[].P"), OPEN, .default_words = "F is given in full",
      .example = "[[0 MPa, x], [x, 0 MPa]]",
-     .help = "First Piola-Kirchhoff stress at its end, of the reference area before inflation; `x` where F is given."},
+     .help = "First Piola-Kirchhoff stress at its end, per area of `process.reference`; `x` where F is given."},
     {REAL("process.program[].load"), INTO(LamProcessLeg, load), FROM(-1000), TO(1000), .default_words = "held",
      .example = "1", .help = "Of a body (`macro`): its load parameter at the end, that of `macro.boundary`."},
     {INTEGER("process.repeat"), INTO(LamProcessSpec, repeat), FROM(1), TO(100000), .default_value = "1",
@@ -471,7 +475,7 @@ static PetscErrorCode BuildDuration(const LamNode *block, LamScene *scene, Petsc
 PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
 {
   const LamNode *block = LamNodeFind(root, "process"), *inflate = LamNodeFind(block, "inflate");
-  const LamNode *output = LamNodeFind(block, "output");
+  const LamNode *output = LamNodeFind(block, "output"), *reference = LamNodeFind(block, "reference");
   LamProcessSpec *spec = &scene->process;
   PetscReal cycle;
 
@@ -481,6 +485,10 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
   spec->inflate = (PetscBool)(scene->turgor != 0);
   PetscCall(LamSceneFill(block, &scene->scales, LamProcessSpec, spec));
   LamSceneCheckName(!scene->has_macro || !inflate, inflate, "is for one material point; of a body write macro.inflate");
+  LamSceneCheckName(!scene->has_macro || !reference, reference,
+                    "is for one material point; of a body write macro.reference");
+  LamSceneCheck(spec->area != LAM_AREA_INFLATED || spec->inflate, reference,
+                "needs the inflated tissue; write a turgor, and no inflate: false");
   LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
                     "permeability: 0 m/s/MPa for cells that keep their water");

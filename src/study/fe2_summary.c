@@ -31,7 +31,8 @@ PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary)
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < scene->region_count; r++)
     if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
-  *summary = (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1};
+  *summary =
+      (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1, .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   summary->onset[LAM_SUMMARY_NORMAL].judged = (PetscBool)isfinite(strength->lamella_normal);
   summary->onset[LAM_SUMMARY_SHEAR].judged = (PetscBool)isfinite(strength->lamella_shear);
   summary->onset[LAM_SUMMARY_UNLOADED].judged = contact;
@@ -274,6 +275,7 @@ static void MeasureBox(LamSummary *summary)
   for (int k = 0; k < 2; k++) {
     const PetscBool is_level = (PetscBool)!strcmp(name, level[k]);
     if (!is_level && strcmp(name, upright[k])) continue;
+    summary->is_level = is_level;
     summary->height = box[is_level ? 1 : 0] * mm;
     summary->length = box[is_level ? 0 : 1] * mm;
   }
@@ -300,9 +302,22 @@ static void FindStiffness(LamSummary *summary)
   }
 }
 
+/* The diagonal, from which strain counts. */
+static void TakeInflated(LamSummary *summary, const LamMacroFields *fields)
+{
+  PetscReal volume = 0, sum[9] = {0};
+
+  for (PetscInt p = 0; p < fields->point_count; p++) {
+    volume += fields->volume[p];
+    for (int i = 0; i < 9; i += 4) sum[i] += fields->volume[p] * fields->load[p].F[i];
+  }
+  for (int i = 0; i < 9; i++) summary->F0[i] = sum[i] / volume;
+}
+
 PetscErrorCode LamSummaryAdd(LamSummary *summary, const LamMacroStep *step, const LamMacroFields *fields)
 {
   PetscFunctionBeginUser;
+  if (!summary->curve.count && summary->scene->macro.inflate) TakeInflated(summary, fields);
   PetscCall(LamCurveAdd(&summary->curve, step, fields, &summary->scene->scales));
   PetscCall(AddOnsets(summary, fields));
   FindStiffness(summary);
@@ -316,11 +331,51 @@ PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive)
   PetscFunctionBeginUser;
   PetscCall(LamArchiveShared(archive, "sides", sizeof(curve->side_count), &curve->side_count));
   PetscCall(LamArchiveShared(archive, "side names", sizeof(curve->side), curve->side));
+  PetscCall(LamArchiveShared(archive, "inflated", sizeof(summary->F0), summary->F0));
   PetscCall(LamArchiveShared(archive, "onsets", sizeof(summary->onset), summary->onset));
   PetscCall(LamArchiveList(archive, "curves", sizeof(LamCurveRow), &curve->count, (void **)&curve->rows));
   PetscCall(LamArchiveList(archive, "measures", sizeof(PetscReal), &summary->before_count, (void **)&summary->before));
   curve->capacity = curve->count;
   FindStiffness(summary);
+  PetscFunctionReturn(0);
+}
+
+/* ---- the mechanical test ---- */
+
+PetscErrorCode LamSummaryTest(const LamSummary *summary, LamTest *test)
+{
+  const LamMacroSpec *spec = &summary->scene->macro;
+  PetscReal height = 1, length = 1;
+  PetscInt k = 0;
+
+  PetscFunctionBeginUser;
+  *test = (LamTest){.scene = summary->scene,
+                    .component = 4,
+                    .lateral = -1,
+                    .is_force = PETSC_TRUE,
+                    .unit = 1,
+                    .volume = 1,
+                    .inflated = spec->inflate,
+                    .area = spec->area};
+  if (summary->side < 0) PetscFunctionReturn(0);
+  test->side = summary->curve.side[summary->side];
+  if (isfinite(summary->height)) {
+    test->is_force = PETSC_FALSE;
+    test->component = summary->is_level ? 4 : 0; /* the normal of the side */
+    LamTestSetInflated(test, summary->F0);
+    height = summary->height * test->length;
+    length = summary->length / test->area_factor;
+  }
+  while (k + 1 < summary->curve.count && Displacement(summary, k + 1) == 0) k++;
+  if (Displacement(summary, k) != 0 && summary->scene->turgor == 0)
+    PetscCall(LamTestAddPoint(test, (LamTestPoint){.modulus = NAN, .poisson = NAN, .lateral = NAN}));
+  for (; k < summary->curve.count; k++)
+    PetscCall(LamTestAddPoint(test, (LamTestPoint){.state = (PetscInt)summary->curve.rows[k].value[LAM_CURVE_STEP],
+                                                   .strain = Displacement(summary, k) / height,
+                                                   .stress = Reaction(summary, k) / length,
+                                                   .modulus = k ? NAN : summary->stiffness.initial * height / length,
+                                                   .poisson = NAN,
+                                                   .lateral = NAN}));
   PetscFunctionReturn(0);
 }
 
@@ -381,6 +436,14 @@ static json_t *SlopesToJSON(const LamSummaryStiffness *s, PetscReal factor)
                    LamJSONReal(s->final * factor), "secant", LamJSONReal(s->secant * factor));
 }
 
+static void SetTest(json_t *o, const LamSummary *summary)
+{
+  LamTest test;
+
+  if (!LamSummaryTest(summary, &test) && test.count > 1) json_object_set_new(o, "test", LamTestToJSON(&test, 0, NULL));
+  (void)LamTestDestroy(&test);
+}
+
 static void SetLoadedSide(json_t *o, const LamSummary *summary)
 {
   const PetscReal factor = summary->height / summary->length;
@@ -389,6 +452,7 @@ static void SetLoadedSide(json_t *o, const LamSummary *summary)
   json_object_set_new(o, "loaded",
                       json_pack("{s:s, s:o}", "boundary", summary->curve.side[summary->side], "direction",
                                 LamJSONReals(2, summary->direction, 1)));
+  SetTest(o, summary);
   json_object_set_new(o, "stiffness", SlopesToJSON(&summary->stiffness, 1));
   if (isfinite(factor)) {
     json_t *modulus = SlopesToJSON(&summary->stiffness, factor);

@@ -24,6 +24,7 @@
 #include <jansson.h>
 #include "fe2_curve.h"
 #include "json.h"
+#include "mechanical_test.h"
 
 #define LAM_SUMMARY_CRITERIA(X)                                                                                        \
   X(LAM_SUMMARY_NORMAL, "lamella_normal")   /* separation: lamella_normal over its strength */                         \
@@ -60,6 +61,7 @@ typedef struct {
   LamSummaryOnset onset[LAM_SUMMARY_CRITERION_COUNT];
   PetscReal *before; /* [point][criterion] measures at the last step, before_count values; owned */
   PetscInt before_count;
+  PetscReal F0[9]; /* of the inflated body, mean; without inflation the identity */
 
   /* at the last step */
   PetscInt side;          /* the loaded side; -1: none is moved */
@@ -67,6 +69,7 @@ typedef struct {
   LamSummaryStiffness stiffness;
   PetscReal height, length; /* of a box, perpendicular to and along the loaded side, mm; moduli are stiffness * height /
                                length; NaN: not a box, or not one of its sides */
+  PetscBool is_level;       /* the loaded side of the box is along X1 */
   PetscInt firmest;         /* row of the largest reaction along the displacement; -1: none is positive */
 } LamSummary;
 
@@ -82,6 +85,8 @@ const LamSummaryOnset *LamSummaryFirst(const LamSummary *summary, LamSummaryMode
    tension if there is none. `field`: values by LamPointField. */
 PetscReal LamSummaryDanger(const LamSummary *summary, const PetscReal field[]);
 
+/* The curve of the loaded side from where it begins to move, or from rest without turgor; borrows from the summary. */
+PetscErrorCode LamSummaryTest(const LamSummary *summary, LamTest *test);
 json_t *LamSummaryToJSON(const LamSummary *summary);
 
 #endif

@@ -14,30 +14,68 @@
 static const int plane[] = {0, 1, 3, 4, 8}; /* components of F in plane strain */
 #define PLANE 5
 
-/* Sum of the changes of a component along the load while it is prescribed, of F or of P. */
-static PetscReal Change(const LamScene *scene, int i, PetscBool stress)
+/* What is prescribed, entry by entry: members of structs that are `stride` bytes apart. */
+typedef struct {
+  PetscInt first, count;
+  const PetscReal *F;
+  const LamStressControl *control; /* NULL: F alone */
+  size_t F_stride, control_stride;
+} Program;
+
+static Program ProgramOfLoads(const LamScene *scene)
 {
-  const PetscInt first = scene->inflate ? 1 : 0; /* its start is known: F = I, or P = 0 */
-  PetscReal sum = 0, before = stress ? 0 : i % 4 == 0;
+  return (Program){.first = scene->inflate ? 1 : 0, /* its start is known: F = I, or P = 0 */
+                   .count = scene->load_count,
+                   .F = scene->load_count ? scene->loads[0].F : NULL,
+                   .control = scene->controls,
+                   .F_stride = sizeof(LamLoad),
+                   .control_stride = sizeof(LamStressControl)};
+}
 
-  for (PetscInt k = first; k < scene->load_count; k++) {
-    const LamStressControl *control = scene->controls ? &scene->controls[k] : NULL;
+static Program ProgramOfLegs(const LamProcessSpec *spec)
+{
+  return (Program){.count = spec->leg_count,
+                   .F = spec->leg_count ? spec->legs[0].F : NULL,
+                   .control = spec->leg_count ? &spec->legs[0].control : NULL,
+                   .F_stride = sizeof(LamProcessLeg),
+                   .control_stride = sizeof(LamProcessLeg)};
+}
+
+static const LamStressControl *ControlAt(const Program *p, PetscInt k)
+{
+  return p->control ? (const LamStressControl *)(const void *)((const char *)p->control + (size_t)k * p->control_stride)
+                    : NULL;
+}
+
+static const PetscReal *FAt(const Program *p, PetscInt k)
+{
+  return (const PetscReal *)(const void *)((const char *)p->F + (size_t)k * p->F_stride);
+}
+
+/* Sum of the changes of a component along the program, of F or of P; where it is free it counts as F = I or P = 0. */
+static PetscReal Change(const Program *p, int i, PetscBool stress)
+{
+  const PetscReal none = stress ? 0 : i % 4 == 0;
+  PetscReal sum = 0, before = none;
+
+  for (PetscInt k = p->first; k < p->count; k++) {
+    const LamStressControl *control = ControlAt(p, k);
     const PetscBool given = (PetscBool)(control && control->given[i]);
-    const PetscReal value = given ? control->P[i] : scene->loads[k].F[i];
+    const PetscReal value = given ? control->P[i] : FAt(p, k)[i];
 
-    if (given == stress && isfinite(before)) sum += fabs(value - before);
-    before = given == stress ? value : NAN;
+    if (given == stress) sum += fabs(value - before);
+    before = given == stress ? value : none;
   }
   return sum;
 }
 
-static int MostChanged(const LamScene *scene, PetscBool stress)
+static int MostChanged(const Program *p, PetscBool stress)
 {
   PetscReal most = LEAST_CHANGE;
   int component = -1;
 
   for (int k = 0; k < PLANE; k++) {
-    const PetscReal change = Change(scene, plane[k], stress);
+    const PetscReal change = Change(p, plane[k], stress);
 
     if (!(change > most)) continue;
     most = change;
@@ -46,14 +84,30 @@ static int MostChanged(const LamScene *scene, PetscBool stress)
   return component;
 }
 
+static LamTest Begin(const LamScene *scene, const Program *p)
+{
+  LamTest test = {.scene = scene,
+                  .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                  .length = 1,
+                  .area_factor = 1,
+                  .volume = 1,
+                  .unit = scene->scales.stress * 1e-6,
+                  .lateral = -1};
+
+  test.component = MostChanged(p, PETSC_FALSE);
+  if (test.component < 0) test.component = MostChanged(p, PETSC_TRUE);
+  if (test.component == 0) test.lateral = 4;
+  if (test.component == 4) test.lateral = 0;
+  return test;
+}
+
 void LamTestCreate(const LamScene *scene, LamTest *test)
 {
-  *test =
-      (LamTest){.scene = scene, .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .length = 1, .area = 1, .volume = 1, .lateral = -1};
-  test->component = MostChanged(scene, PETSC_FALSE);
-  if (test->component < 0) test->component = MostChanged(scene, PETSC_TRUE);
-  if (test->component == 0) test->lateral = 4;
-  if (test->component == 4) test->lateral = 0;
+  const Program program = ProgramOfLoads(scene);
+
+  *test = Begin(scene, &program);
+  test->inflated = scene->inflate;
+  test->area = scene->area;
 }
 
 void LamTestMeasures(const LamTest *test, const LamResponse *response, PetscReal F[9], PetscReal P[9])
@@ -64,7 +118,7 @@ void LamTestMeasures(const LamTest *test, const LamResponse *response, PetscReal
     const PetscReal length = F0[4 * (i % 3)];
 
     F[i] = response->load.F[i] / length;
-    P[i] = response->P[i] * (test->scene->area == LAM_AREA_INFLATED ? length / J0 : 1);
+    P[i] = response->P[i] * (test->area == LAM_AREA_INFLATED ? length / J0 : 1);
   }
 }
 
@@ -131,45 +185,133 @@ static PetscReal Maximum(const LamTestPoint *a, const LamTestPoint *b, PetscReal
   return down > 0 && down < 1 ? down : NAN;
 }
 
-static void SetInflated(LamTest *test, const PetscReal F0[9])
+void LamTestSetInflated(LamTest *test, const PetscReal F0[9])
 {
-  const PetscBool inflated = (PetscBool)(test->scene->area == LAM_AREA_INFLATED);
+  const PetscBool inflated = (PetscBool)(test->area == LAM_AREA_INFLATED);
 
   for (int i = 0; i < 9; i++) test->F0[i] = F0[i];
   if (test->component < 0) return;
   test->length = F0[4 * (test->component % 3)];
-  test->area = inflated ? test->length / (F0[0] * F0[4] * F0[8]) : 1;
+  test->area_factor = inflated ? test->length / (F0[0] * F0[4] * F0[8]) : 1;
   test->volume = inflated ? 1 : test->length;
+}
+
+PetscErrorCode LamTestAddPoint(LamTest *test, LamTestPoint point)
+{
+  const LamTestPoint *last;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamListGrow(test->count, sizeof(point), &test->capacity, &test->points));
+  if (test->count) {
+    last = &test->points[test->count - 1];
+    point.energy = last->energy + test->volume * (point.strain - last->strain) * At(last, &point, 1).integral;
+  }
+  test->points[test->count++] = point;
+  PetscFunctionReturn(0);
+}
+
+/* Strain and stress; nothing else is known. F, P: as LamTestMeasures gives them. */
+static LamTestPoint PointOf(const LamTest *test, PetscInt state, const PetscReal F[9], const PetscReal P[9],
+                            PetscBool jumped)
+{
+  const int d = test->component;
+
+  return (LamTestPoint){.state = state,
+                        .strain = F[d] - (d % 4 == 0),
+                        .stress = P[d],
+                        .modulus = NAN,
+                        .poisson = NAN,
+                        .lateral = test->lateral < 0 ? NAN : F[test->lateral],
+                        .jumped = jumped};
 }
 
 PetscErrorCode LamTestAdd(LamTest *test, PetscInt state, const LamResponse *response, const LamStressControl *control)
 {
   static const LamStressControl none = {0};
   const LamScene *scene = test->scene;
-  const int d = test->component;
-  LamTestPoint *point;
   PetscReal F[9], P[9], lateral;
+  LamTestPoint point;
 
   PetscFunctionBeginUser;
   if (!LamResponseHasFields(response)) PetscFunctionReturn(0);
   if (scene->inflate && state == 1) {
-    SetInflated(test, response->load.F);
+    LamTestSetInflated(test, response->load.F);
     /* the slope at the start is that of the states to come */
     control = scene->load_count > 1 ? &scene->controls[1] : &none;
   }
-  if (d < 0) PetscFunctionReturn(0);
-  PetscCall(LamListGrow(test->count, sizeof(*point), &test->capacity, &test->points));
-  point = &test->points[test->count++];
+  if (test->component < 0) PetscFunctionReturn(0);
   LamTestMeasures(test, response, F, P);
-  *point = (LamTestPoint){
-      .state = state, .strain = F[d] - (d % 4 == 0), .stress = P[d], .poisson = NAN, .jumped = response->jumped};
-  PetscCall(Slopes(test, response, control, &point->modulus, &lateral));
-  point->modulus *= test->length * test->area;
-  if (test->lateral >= 0) point->poisson = -lateral * test->length / test->F0[test->lateral];
-  if (test->count > 1) {
-    const LamTestPoint *a = point - 1;
+  point = PointOf(test, state, F, P, response->jumped);
+  point.lateral = NAN;
+  PetscCall(Slopes(test, response, control, &point.modulus, &lateral));
+  point.modulus *= test->length * test->area_factor;
+  if (test->lateral >= 0) point.poisson = -lateral * test->length / test->F0[test->lateral];
+  PetscCall(LamTestAddPoint(test, point));
+  PetscFunctionReturn(0);
+}
 
-    point->energy = a->energy + test->volume * (point->strain - a->strain) * At(a, point, 1).integral;
+/* Whether the lateral component is free in all parts in which the driven one is prescribed. */
+static PetscBool LateralIsFree(const LamTest *test, const Program *p)
+{
+  for (PetscInt k = 0; k < p->count && test->lateral >= 0; k++)
+    if (!ControlAt(p, k)->given[test->component] && !ControlAt(p, k)->given[test->lateral]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* F0 of a process: the ratio of F from rest and from there. */
+static void Inflated(const LamProcessState *state, PetscReal F0[9])
+{
+  for (int i = 0; i < 9; i++) F0[i] = i % 4 ? 0 : state->response.load.F[i] / state->F[i];
+}
+
+void LamProcessMeasures(const LamScene *scene, const LamProcessState *state, PetscReal F[9], PetscReal P[9])
+{
+  LamTest test = {.component = -1, .area = scene->process.area};
+
+  Inflated(state, test.F0);
+  LamTestMeasures(&test, &state->response, F, P);
+  for (int i = 0; i < 9; i++) F[i] = state->F[i]; /* F0 of cells that differ may have a shear */
+}
+
+/* When the component of F, or of P, is first driven. */
+static PetscReal StartOf(const LamProcessSpec *spec, int i, PetscBool stress)
+{
+  PetscReal start = 0, before = stress ? 0 : i % 4 == 0;
+
+  for (PetscInt k = 0; k < spec->leg_count; k++) {
+    const LamProcessLeg *leg = &spec->legs[k];
+    const PetscReal value = stress ? leg->control.P[i] : leg->F[i];
+
+    if (leg->control.given[i] != stress)
+      before = NAN;
+    else if (!(fabs(value - before) <= LEAST_CHANGE))
+      break;
+    start += leg->duration;
+  }
+  return start;
+}
+
+PetscErrorCode LamTestOfProcess(const LamScene *scene, PetscInt count, const LamProcessState states[], LamTest *test)
+{
+  const LamProcessSpec *spec = &scene->process;
+  const Program program = ProgramOfLegs(spec);
+  PetscReal F0[9], start;
+
+  PetscFunctionBeginUser;
+  *test = Begin(scene, &program);
+  test->inflated = spec->inflate;
+  test->area = spec->area;
+  if (test->component < 0 || !count) PetscFunctionReturn(0);
+  start = StartOf(spec, test->component, (PetscBool) !(Change(&program, test->component, PETSC_FALSE) > LEAST_CHANGE));
+  if (!LateralIsFree(test, &program)) test->lateral = -1;
+  Inflated(&states[0], F0);
+  LamTestSetInflated(test, F0);
+  for (PetscInt k = 0; k < count; k++) {
+    PetscReal F[9], P[9];
+
+    if (states[k].time < start || !LamResponseHasFields(&states[k].response)) continue;
+    LamProcessMeasures(scene, &states[k], F, P);
+    PetscCall(LamTestAddPoint(test, PointOf(test, k, F, P, states[k].response.jumped)));
   }
   PetscFunctionReturn(0);
 }
@@ -230,14 +372,28 @@ static void ReadMaxima(const LamTest *test, LamTestReadings *r)
   if (isfinite(first.strain) && first.strain != r->peak.strain) r->bioyield = first;
 }
 
+/* Where the strain begins to change; of lines between states those of the first one. */
+static void ReadStart(const LamTest *test, LamTestReadings *r)
+{
+  const LamTestPoint *a = test->points, *end = test->points + test->count - 1;
+  PetscReal h;
+
+  while (a + 1 < end && fabs(a[1].strain - a->strain) <= LEAST_CHANGE) a++;
+  r->modulus = a->modulus;
+  r->poisson = a->poisson;
+  if (a == end) return;
+  h = a[1].strain - a->strain;
+  if (isnan(r->modulus)) r->modulus = At(a, a + 1, 0).slope / h;
+  if (isnan(r->poisson)) r->poisson = -(a[1].lateral - a->lateral) / h;
+}
+
 void LamTestRead(const LamTest *test, LamTestReadings *r)
 {
   const LamTestMark unknown = {NAN, NAN};
 
   *r = (LamTestReadings){.modulus = NAN, .poisson = NAN, .bioyield = unknown, .peak = unknown, .energy_to_peak = NAN};
   if (!test->count) return;
-  r->modulus = test->points[0].modulus;
-  r->poisson = test->points[0].poisson;
+  ReadStart(test, r);
   for (PetscInt k = 1; k < test->count; k++) {
     const PetscReal energy = test->points[k].energy - test->points[k - 1].energy;
 

@@ -4,6 +4,7 @@
 */
 #include "process_run.h"
 #include "beside.h"
+#include "mechanical_test.h"
 #include "names.h"
 #include <stddef.h>
 #include <string.h>
@@ -132,13 +133,15 @@ PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scen
   fputc('\n', file.out);
   for (PetscInt n = 0; n < h->count; n++) {
     const LamProcessState *state = &h->states[n];
+    PetscReal F[9], P[9];
 
+    LamProcessMeasures(scene, state, F, P);
     fprintf(file.out, "%d,%s", (int)n, state->event == LAM_EVENT_COUNT ? "" : LamEventNames[state->event]);
     for (int c = 0; c < POINT_COLUMNS; c++)
       LamBesideNumber(file.out,
                       columns[c].factor * *(const PetscReal *)(const void *)((const char *)state + columns[c].offset));
-    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, state->F[plane[k]]);
-    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, state->response.P[plane[k]] * MPa);
+    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, F[plane[k]]);
+    for (int k = 0; k < 5; k++) LamBesideNumber(file.out, P[plane[k]] * MPa);
     fputc('\n', file.out);
   }
   PetscCall(LamBesideClose(&file));

@@ -52,7 +52,7 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
 
 void LamRVECSVAdd(LamRVERun *run, const LamResponse *r)
 {
-  const LamTestPoint none = {0, NAN, NAN, NAN, NAN, NAN, PETSC_FALSE};
+  const LamTestPoint none = {0, NAN, NAN, NAN, NAN, NAN, NAN, PETSC_FALSE};
   const LamTestPoint *last = run->test.count ? &run->test.points[run->test.count - 1] : &none;
   const LamTestPoint *p = last->state == run->solved ? last : &none;
   const PetscReal MPa = run->scene->scales.stress * 1e-6;

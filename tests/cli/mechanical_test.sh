@@ -42,3 +42,59 @@ load:
   - {F: [[1.1, 0], [0, 1]]}
 YAML
 expect 3 -e 'what follows counts from it' "$lamella" rve burst.yaml
+
+# one test by three commands: strain from the inflated tissue, stress per area of it
+pull='F: [[1.1, 0], [0, free]], P: [[x, x], [x, 0 MPa]]'
+tissue turgor='pressure: 0.1 MPa' mesh='along: 4, through: 1' >tissue.yaml </dev/null
+cat tissue.yaml - >rve.yaml <<YAML
+load: [{inflate: true, reference: inflated}, {ramp: {to: [[1.1, 0], [0, free]], P: [[x, x], [x, 0 MPa]], steps: 10}}]
+YAML
+cat tissue.yaml - >point.yaml <<YAML
+process: {reference: inflated, output: 1 s, program: [{for: 5 s}, {for: 10 s, $pull}]}
+YAML
+# body REFERENCE: pulled by a tenth of its inflated width
+body() {
+  cat tissue.yaml - <<YAML
+macro:
+  mesh: {box: [10 mm, 10 mm], elements: [1, 1]}
+  reference: $1
+  boundary: [{on: left, symmetry: true}, {on: bottom, symmetry: true}, {on: right, displacement: [$width mm, free]}]
+  steps: 10
+YAML
+}
+expect 0 "$lamella" rve rve.yaml --json --at 0.05 --no-estimate
+tail -1 out.txt >rve.json
+width=$(sed 's/.*"F_inflated": \[\([0-9.]*\).*/\1/' rve.json)
+expect 0 "$lamella" process point.yaml --json --at 0.05
+tail -1 out.txt >point.json
+tail -2 out.txt | head -1 >state.json
+body inflated >body.yaml
+expect 0 "$lamella" fe2 body.yaml --json --at 0.05 -o body.h5
+tail -1 out.txt >body.json
+body rest >rest.yaml
+expect 0 "$lamella" fe2 rest.yaml --json --readings
+tail -1 out.txt >rest.json
+(cat body.yaml; echo 'process: {output: 1 s, program: [{for: 5 s}, {for: 10 s, load: 1}]}') >held.yaml
+expect 0 "$lamella" process held.yaml --json --at 0.05
+tail -1 out.txt >held.json
+expect 0 "$lamella" info body.h5 --json
+/usr/bin/python3 - <<'PYTHON' || fail "three commands do not read the same: $(cat rve.json point.json body.json held.json rest.json)"
+import json
+read = {name: json.load(open(name + ".json"))["test"] for name in ("rve", "point", "body", "held", "rest")}
+rve = read["rve"]
+near = lambda a, b, t: abs(a - b) <= t * abs(b)
+for name in ("point", "body", "held"):
+    test = read[name]
+    assert test["reference"] == "inflated" and near(test["F_inflated"][0], rve["F_inflated"][0], 1e-5), name
+    assert near(test["peak"]["strain"], 0.1, 1e-5) and near(test["peak"]["stress"], rve["peak"]["stress"], 1e-4), name
+    assert near(test["at"][0]["stress"], rve["at"][0]["stress"], 1e-4), name
+    assert near(test["work"], rve["work"], 5e-3) and near(test["modulus"], rve["modulus"], 2e-2), name
+assert near(read["point"]["poisson"], rve["poisson"], 1e-2)
+assert near(read["rest"]["peak"]["stress"], rve["peak"]["stress"] * rve["F_inflated"][0], 1e-4)
+state = json.load(open("state.json"))["from_inflated"]
+assert near(state["F"][0], 1.1, 1e-9) and near(state["P"][0], read["point"]["peak"]["stress"], 1e-9)
+kept = json.load(open("out.txt"))["summary"]["test"]
+assert kept["peak"] == read["body"]["peak"]
+PYTHON
+expect 0 -o '^test: force on right over its displacement, both over edges of the box' -o 'at 0.05: stress' "$lamella" fe2 body.yaml --at 0.05
+expect 0 -o '^test: P11 over F11 - 1, from the inflated tissue' "$lamella" process point.yaml --readings

@@ -170,6 +170,49 @@ TEST(AJumpEndsThePeak)
   CHECK(LamTestDestroy(&test));
 }
 
+/* Points whose slopes are not known, as those of bodies: 0, 3 and 1 over 0, 1 and 3. */
+static LamTestReadings ReadLines(void)
+{
+  LamTest test = {.unit = 1, .volume = 1};
+  LamTestReadings r;
+
+  for (int k = 0; k < 3; k++)
+    CHECK(LamTestAddPoint(&test, (LamTestPoint){.strain = (PetscReal[]){0, 1, 3}[k],
+                                                .stress = (PetscReal[]){0, 3, 1}[k],
+                                                .lateral = (PetscReal[]){1, 0.7, 0.7}[k],
+                                                .modulus = NAN,
+                                                .poisson = NAN}));
+  LamTestRead(&test, &r);
+  CHECK(LamTestDestroy(&test));
+  return r;
+}
+TEST_IS(LinesJoinPointsWithoutSlopes, assert_near(ReadLines().work, 5.5, 1e-14));
+TEST_IS(ThePeakOfLinesIsAPoint, assert_true(ReadLines().passed &&ReadLines().peak.strain == 1));
+TEST_IS(ModulusOfTheFirstLine, assert_near(ReadLines().modulus, 3, 1e-14));
+TEST_IS(PoissonsRatioOfTheFirstLine, assert_near(ReadLines().poisson, 0.3, 1e-14));
+
+/* A process that is free, pulled and released. */
+TEST(TheCurveOfAProcessBeginsWhereItDrives)
+{
+  LamProcessLeg legs[] = {{.duration = 5, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .control.given = {PETSC_TRUE}},
+                          {.duration = 5, .F = {1.1, 0, 0, 0, 1, 0, 0, 0, 1}},
+                          {.duration = 5, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
+  LamScene scene = {.process = {.leg_count = 3, .legs = legs}};
+  LamProcessState states[4];
+  LamTest test;
+
+  for (int k = 0; k < 4; k++) {
+    states[k] = (LamProcessState){.time = 5 * k, .F = {1 + 0.1 * (k == 2), 0, 0, 0, 1, 0, 0, 0, 1}};
+    CHECK(LamResponseInit(&(LamLoad){.F = {1 + 0.1 * (k == 2), 0, 0, 0, 1, 0, 0, 0, 1}}, &states[k].response));
+    states[k].response.status = LAM_CONVERGED;
+  }
+  CHECK(LamTestOfProcess(&scene, 4, states, &test));
+  assert_int_equal(test.component, 0);
+  assert_int_equal(test.count, 3);
+  assert_int_equal(test.points[0].state, 1);
+  CHECK(LamTestDestroy(&test));
+}
+
 /* Of P where no F is prescribed that changes. */
 TEST(AStressThatIsDrivenIsFound)
 {
