@@ -98,3 +98,11 @@ assert kept["peak"] == read["body"]["peak"]
 PYTHON
 expect 0 -o '^test: force on right over its displacement, both over edges of the box' -o 'at 0.05: stress' "$lamella" fe2 body.yaml --at 0.05
 expect 0 -o '^test: P11 over F11 - 1, from the inflated tissue' "$lamella" process point.yaml --readings
+
+# the picture marks the peak of cells that come apart
+tissue interface='law: contact, cohesion: 0.05 MPa' >apart.yaml <<'YAML'
+load: [{inflate: true}, {ramp: {to: [[1.4, 0], [0, free]], P: [[x, x], [x, 0 MPa]], steps: 6}}]
+YAML
+expect 0 -o '^  peak 0.0' "$lamella" rve apart.yaml --no-estimate -o apart.h5
+expect 0 "$lamella" plot apart.h5 -o apart.svg
+grep -q 'stroke-dasharray:1.2' apart.svg || fail "the picture does not mark the peak"

@@ -20,6 +20,7 @@
 #ifndef LAM_PLOT_H
 #define LAM_PLOT_H
 
+#include "mechanical_test.h"
 #include <lamella/database.h>
 #include <cairo.h>
 
@@ -322,13 +323,15 @@ typedef struct {
   char label[32];
   const char *unit; /* NULL: none */
   PetscBool whole;
+  int component; /* it is this one of F; -1: something else */
 } LamLoadAxis;
 /* values [n]: the load parameter of each state; keys are the state numbers. */
 PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                  const LamScales *scales, LamLoadAxis *axis, PetscReal values[]);
-/* Effective stresses P11, P12, P21, P22 over the states, inside `outer`. */
+/* Effective stresses P11, P12, P21, P22 over the states, inside `outer`, with bioyield and peak of the test's curve if
+   it is over the same component. */
 PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const LamResponse records[],
-                              const PetscInt64 keys[], const LamScales *scales);
+                              const PetscInt64 keys[], const LamScales *scales, const LamTest *test);
 
 /* ---- one picture per kind of file ---- */
 /* Every picture is as wide as a journal page. */

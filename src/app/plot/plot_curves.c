@@ -94,13 +94,14 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
     turgor = (PetscBool)(turgor || Differs(records[k].load.turgor, records[0].load.turgor));
     cohesion = (PetscBool)(cohesion || Differs(records[k].load.cohesion, records[0].load.cohesion));
   }
-  *axis = (LamLoadAxis){"", NULL, PETSC_FALSE};
+  *axis = (LamLoadAxis){"", NULL, PETSC_FALSE, -1};
   if (component == -2 && !turgor && !cohesion && !Proportional(n, records)) {
     component = WorkingComponent(n, records);
     works = (PetscBool)(component >= 0);
   }
   if (component >= 0 && !turgor && !cohesion) {
     found = PETSC_TRUE;
+    axis->component = component;
     snprintf(axis->label, sizeof axis->label, "$F$_{%d%d}", component / 3 + 1, component % 3 + 1);
     for (PetscInt k = 0; k < n; k++) values[k] = records[k].load.F[component];
   } else if (component == -2 && !turgor && !cohesion && Proportional(n, records)) {
@@ -118,7 +119,7 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
       values[k] = (turgor ? records[k].load.turgor : records[k].load.cohesion) * scales->stress * 1e-6;
   }
   if (!found || (!works && !Monotonic(n, values))) {
-    *axis = (LamLoadAxis){"state", NULL, PETSC_TRUE};
+    *axis = (LamLoadAxis){"state", NULL, PETSC_TRUE, -1};
     for (PetscInt k = 0; k < n; k++) values[k] = (PetscReal)keys[k];
   }
   PetscFunctionReturn(0);
@@ -191,8 +192,24 @@ static PetscErrorCode UnstableSeries(PetscInt n, const LamResponse records[], co
   PetscFunctionReturn(0);
 }
 
+static void DrawMark(LamCanvas canvas, const LamAxes *axes, const LamTest *test, LamTestMark mark, const char name[])
+{
+  const PetscReal F = (mark.strain + (test->component % 4 == 0)) * test->length; /* from rest, as the axis is */
+
+  if (isfinite(F)) LamAxesMark(canvas, axes, F, (LamColour){0.45, 0.45, 0.5}, PETSC_TRUE, name);
+}
+
+static void DrawReadings(LamCanvas canvas, const LamAxes *axes, const LamTest *test)
+{
+  LamTestReadings r;
+
+  LamTestRead(test, &r);
+  DrawMark(canvas, axes, test, r.bioyield, "bioyield");
+  if (r.passed) DrawMark(canvas, axes, test, r.peak, "peak");
+}
+
 PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const LamResponse records[],
-                              const PetscInt64 keys[], const LamScales *scales)
+                              const PetscInt64 keys[], const LamScales *scales, const LamTest *test)
 {
   LamSeries series[6];
   LamLoadAxis load;
@@ -209,6 +226,7 @@ PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const
   PetscCall(UnstableSeries(n, records, &series[0], &series[4]));
   PetscCall(FailureSeries(n, records, values, &series[0], &series[5]));
   LamChart(canvas, outer, &axes, 6, series);
+  if (test->count > 1 && test->component == load.component) DrawReadings(canvas, &axes, test);
   for (int c = 0; c < 6; c++) PetscCall(LamSeriesDestroy(&series[c]));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);

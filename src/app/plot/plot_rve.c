@@ -10,6 +10,8 @@ typedef struct {
   PetscInt index;       /* of the state drawn */
   const LamWallField *field;
   LamTissue tissue;
+  LamScene *scene; /* that the file was made of; NULL: unknown; owned */
+  LamTest test;
 } RVEPicture;
 
 /* The requested state, or the last converged one. */
@@ -51,6 +53,41 @@ static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
   PetscCall(PetscSNPrintf(fields, sizeof fields, "/fields/%" PetscInt64_FMT, p->of.keys[p->index]));
   PetscCall(LamTissueRead(path, "/mesh", fields, p->field, (PetscBool)(p->of.micro.interface == LAM_INTERFACE_CONTACT),
                           p->of.records[p->index].load.F, &p->tissue));
+  PetscFunctionReturn(0);
+}
+
+/* The curve of the states. */
+static PetscErrorCode FollowTest(RVEPicture *p)
+{
+  const LamScene *scene = p->scene;
+
+  PetscFunctionBeginUser;
+  LamTestCreate(scene, &p->test);
+  for (PetscInt k = 0; k < p->of.n; k++) {
+    const PetscInt64 number = p->of.keys[k];
+
+    if (number < 1 || number > scene->load_count) continue;
+    PetscCall(LamTestAdd(&p->test, (PetscInt)number, &p->of.records[k],
+                         scene->controls ? &scene->controls[number - 1] : NULL));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A scene that cannot be read any more, such as one whose files are gone, leaves the picture without marks. */
+static PetscErrorCode ReadTest(const char path[], RVEPicture *p)
+{
+  PetscErrorCode ierr;
+  PetscBool found;
+  char *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, "/scene", &found, &text));
+  if (!found) PetscFunctionReturn(0);
+  PetscCall(PetscPushErrorHandler(PetscIgnoreErrorHandler, NULL));
+  ierr = LamSceneReadText(path, text, &p->scene);
+  PetscCall(PetscPopErrorHandler());
+  PetscCall(PetscFree(text));
+  if (!ierr) PetscCall(FollowTest(p));
   PetscFunctionReturn(0);
 }
 
@@ -128,12 +165,16 @@ PetscErrorCode LamPlotRVE(const LamPlotRequest *request)
 
   PetscFunctionBeginUser;
   PetscCall(LoadRVE(request, &picture));
+  PetscCall(ReadTest(request->input, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   Title(&picture, sizeof title, title);
   LamCanvasTitle(canvas, left.x, 12, title);
   PetscCall(DrawPanel(canvas, left, &picture));
-  PetscCall(LamStressChart(canvas, right, picture.of.n, picture.of.records, picture.of.keys, &picture.of.scales));
+  PetscCall(LamStressChart(canvas, right, picture.of.n, picture.of.records, picture.of.keys, &picture.of.scales,
+                           &picture.test));
   PetscCall(LamCanvasFinish(&canvas));
+  PetscCall(LamTestDestroy(&picture.test));
+  PetscCall(LamSceneDestroy(&picture.scene));
   PetscCall(LamTissueDestroy(&picture.tissue));
   PetscCall(LamDatabaseClose(&picture.database));
   PetscFunctionReturn(0);
