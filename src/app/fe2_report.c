@@ -71,14 +71,22 @@ static void PrintTissues(const LamFE2Tissues *tissues)
   }
 }
 
+#define BALANCE 1e-9 /* of the largest reaction: equilibrium holds to this (macro/stepping.c), less is noise */
+
 void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names)
 {
+  PetscReal largest = 0;
+
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    for (int i = 0; i < 2; i++) largest = PetscMax(largest, fabs(step->reaction[s][i]));
   for (PetscInt s = 0; s < step->boundary_count; s++)
     for (int i = 0; i < 2; i++) {
       if (names)
         printf(" %9s.%c", step->boundary[s], "xy"[i]);
       else
-        printf(" %11.4e", (double)(LamWithoutNoise(step->reaction[s][i]) * ForceUnit(run)));
+        printf(" %11.4e", fabs(step->reaction[s][i]) < BALANCE * largest
+                              ? 0.0
+                              : (double)(LamWithoutNoise(step->reaction[s][i]) * ForceUnit(run)));
     }
 }
 

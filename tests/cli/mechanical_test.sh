@@ -99,6 +99,12 @@ PYTHON
 expect 0 -o '^test: force on right over its displacement, both over edges of the box' -o 'at 0.05: stress' "$lamella" fe2 body.yaml --at 0.05
 expect 0 -o '^test: P11 over F11 - 1, from the inflated tissue' "$lamella" process point.yaml --readings
 
+# a stress that a process prescribes is per that area, too
+cat tissue.yaml - >creep.yaml <<'YAML'
+process: {reference: inflated, output: 5 s, program: [{for: 5 s, F: [[free, 0], [0, free]], P: [[0.02 MPa, x], [x, 0 MPa]]}]}
+YAML
+expect 0 -o '"from_inflated": {"F": \[[^]]*\], "P": \[0.0\(2\|1999999999\)[0-9]*, ' "$lamella" process creep.yaml --json
+
 # the picture marks the peak of cells that come apart
 tissue interface='law: contact, cohesion: 0.05 MPa' >apart.yaml <<'YAML'
 load: [{inflate: true}, {ramp: {to: [[1.4, 0], [0, free]], P: [[x, x], [x, 0 MPa]], steps: 6}}]
