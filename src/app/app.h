@@ -137,6 +137,8 @@ typedef struct {
 } LamConsole;
 LamReporter LamConsoleReporter(LamConsole *console); /* borrows it */
 void LamConsoleClear(LamConsole *console);           /* removes the bar */
+/* After a signal, on rank 0: what is in the file of -o or -d (NULL: none), and how to go on. resumes: with --resume. */
+void LamTellStopped(const LamConsole *console, const char path[], PetscBool resumes);
 /* Exit status after a stop request, or `unsolved` or not; that of rank 0 on all ranks, as mpirun reports the largest.
  */
 PetscErrorCode LamShareOutcome(PetscBool unsolved, int *exit_status);

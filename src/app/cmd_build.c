@@ -58,6 +58,7 @@ static PetscErrorCode Run(LamBuild *b, LamConsole *console, const char scene_pat
   LamConsoleClear(console);
   if (!b->rank && console->json) PetscCall(ReportCommit(NULL, b)); /* the table at the end */
   if (!b->rank && !console->json) PrintTable(b, LamClock() - b->start);
+  LamTellStopped(console, b->path, PETSC_TRUE);
   PetscCall(LamShareOutcome((PetscBool)(LamBuildFailed(b) > 0), exit_status));
   PetscFunctionReturn(0);
 }

@@ -114,6 +114,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
   PetscCall(LamMapRun(&m));
   LamConsoleClear(&console);
   if (!m.rank && !console.json) PrintSummary(&m);
+  LamTellStopped(&console, m.path, PETSC_TRUE);
   PetscCall(LamShareOutcome((PetscBool)(!m.rank && LamMapCountMode(&m, LAM_FAILURE_UNKNOWN)), exit_status));
   PetscCall(LamMapDestroy(&m));
   PetscFunctionReturn(0);

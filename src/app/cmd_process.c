@@ -358,5 +358,6 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
     PetscCall(RunBody(&run, frames, &console, exit_status));
   else
     PetscCall(RunPoint(&run, frames, &console, exit_status));
+  LamTellStopped(&console, run.out_path, PETSC_FALSE);
   PetscFunctionReturn(0);
 }

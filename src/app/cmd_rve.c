@@ -200,6 +200,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     PetscCall(LamRVERunSolve(run));
     LamConsoleClear(console);
     PetscCall(ReportEnd(command));
+    LamTellStopped(console, run->out_path, PETSC_FALSE);
     *exit_status = ExitStatus(run);
   }
   PetscCall(LamRVERunDestroy(run));

@@ -78,6 +78,18 @@ void LamConsoleClear(LamConsole *console)
   console->drawn = 0;
 }
 
+void LamTellStopped(const LamConsole *console, const char path[], PetscBool resumes)
+{
+  if (!LamStopRequested() || !LamAppIsRoot()) return;
+  if (!path)
+    fprintf(stderr, "lamella %s: stopped: without -o OUT.h5 nothing is kept\n", console->command);
+  else if (resumes)
+    fprintf(stderr, "lamella %s: stopped: the same command with --resume goes on with %s\n", console->command, path);
+  else
+    fprintf(stderr, "lamella %s: stopped: %s has what came before; the same command begins anew\n", console->command,
+            path);
+}
+
 PetscErrorCode LamShareOutcome(PetscBool unsolved, int *exit_status)
 {
   PetscFunctionBeginUser;

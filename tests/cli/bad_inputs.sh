@@ -191,14 +191,21 @@ edited fe2 's/mode: prescribed/mode: sealed/'
 expect 0 -e '^lamella fe2: sealed cells are solved at each material point.*; -d DB.h5' "$lamella" fe2 bad.yaml --json
 expect 0 "$lamella" fe2 fe2.yaml
 grep -qE '^ +1  1.0000  0.0000e\+00 ' out.txt || fail "noise in the table: $(cat out.txt)"
-# an interrupt: how to go on
-sed 's/steps: 1/steps: 5000/' fe2.yaml >bad.yaml
-"$lamella" fe2 bad.yaml --json -o long.h5 >long.jsonl 2>err.txt &
-pid=$!
-until [ -s long.jsonl ] || ! kill -0 $pid 2>/dev/null; do sleep 0.05; done
-ends INT 130 $pid
-grep -q 'fe2: stopped: the same command with --resume goes on behind the last complete step of long.h5' err.txt ||
-  fail "the interrupt does not say how to go on: $(cat err.txt)"
-count=$((count + 3))
+count=$((count + 2))
+# interrupted SCENE EDIT WORDS COMMAND [OPTION...]: how to go on
+interrupted() {
+  edited "$1" "$2"
+  rm -f long.h5 long.jsonl
+  "$lamella" "$4" bad.yaml --json "${@:5}" >long.jsonl 2>err.txt &
+  pid=$!
+  until [ -s long.jsonl ] || ! kill -0 $pid 2>/dev/null; do sleep 0.05; done
+  ends INT 130 $pid
+  grep -q "^lamella $4: stopped: $3" err.txt || fail "the interrupt of $4 does not say \"$3\": $(cat err.txt)"
+  count=$((count + 1))
+}
+interrupted fe2 's/steps: 1/steps: 5000/' 'the same command with --resume goes on behind the last complete step of long.h5' fe2 -o long.h5
+interrupted map 's/points: 2/points: 500/g' 'the same command with --resume goes on with long.h5' map -o long.h5
+interrupted rve 's/steps: 2/steps: 10000/' 'long.h5 has what came before; the same command begins anew' rve -o long.h5
+interrupted process 's/output: 1 h/output: 0.01 s/' 'without -o OUT.h5 nothing is kept' process
 
-[ $count -ge 94 ] || fail "$count bad inputs"
+[ $count -ge 97 ] || fail "$count bad inputs"
