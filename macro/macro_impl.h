@@ -360,6 +360,7 @@ static inline PetscBool LamMacroIsObstacle(const LamBoundary *boundary)
 /* Places the obstacles at first contact with the present body. */
 PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
 void LamMacroObstaclesMove(LamMacro macro);
+void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step);
 LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[]);
 
 /* rows.c */

@@ -120,6 +120,21 @@ void LamMacroObstaclesMove(LamMacro macro)
   }
 }
 
+void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step)
+{
+  step->obstacle_count = macro->obstacle_count;
+  for (PetscInt o = 0; o < macro->obstacle_count; o++) {
+    const LamObstacle *obstacle = &macro->obstacles[o];
+    const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
+    const PetscBool plate = (PetscBool)(boundary->kind == LAM_BOUNDARY_PLATE);
+    for (int i = 0; i < 2; i++) {
+      step->obstacle[o][i] = plate ? obstacle->place[0] * obstacle->normal[i] : obstacle->place[i];
+      step->obstacle[o][2 + i] = obstacle->normal[i];
+    }
+    step->obstacle[o][4] = plate ? 0 : boundary->radius;
+  }
+}
+
 LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[])
 {
   const PetscReal *X = &macro->position[2 * (node->point - macro->mesh_start)];

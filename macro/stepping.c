@@ -360,6 +360,7 @@ PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal loa
   step->load_factor = load_factor;
   PetscCall(LamMacroSetLoadFactor(macro, load_factor)); /* a failed increment has set another one */
   LamMacroDisplacements(macro, step);
+  LamMacroObstaclesDescribe(macro, step);
   PetscCall(LamMacroReactions(macro, step));
   PetscCall(MeanIndicators(macro, step));
   PetscCall(LamMacroFindLocalisation(macro, step));

@@ -32,8 +32,11 @@ typedef struct {
   PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by LamMacroSetReference; NaN: unknown, ... */
   char uncertified[200];                         /* ... and why; empty without a reference */
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
-  PetscReal work;                                /* of the boundary forces since the start, stress * length^2 */
-  PetscReal debonded_fraction, max_gap;          /* not finite if unknown to the responder */
+  PetscInt obstacle_count;
+  PetscReal obstacle[LAM_MAX_BOUNDARIES][5]; /* plates and indenters, macro lengths: a point of the plate, its normal
+                                                into the body, 0; the indenter's centre, direction and radius */
+  PetscReal work;                            /* of the boundary forces since the start, stress * length^2 */
+  PetscReal debonded_fraction, max_gap;      /* not finite if unknown to the responder */
   PetscReal turgor_mean;
   PetscReal ellipticity;            /* minimum over the material points (ellipticity.h); NaN: unknown */
   PetscReal localisation_normal[2]; /* reference normal of the critical band there, */

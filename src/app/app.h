@@ -87,6 +87,7 @@ typedef enum {
   LAM_OPTION_FLAG,     /* PetscBool */
   LAM_OPTION_TEXT,     /* const char *, borrowed */
   LAM_OPTION_ACCURACY, /* PetscReal above 0, or inf */
+  LAM_OPTION_STATE,    /* PetscInt from 0 on, or LAM_PLOT_LAST of plot.h for "last" */
   LAM_OPTION_FROM_0,   /* PetscInt; this one and the next two: the least that is allowed */
   LAM_OPTION_FROM_1,
   LAM_OPTION_FROM_2

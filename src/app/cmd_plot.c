@@ -41,14 +41,16 @@ static PetscErrorCode DefaultOutput(const char input[], size_t size, char output
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
 {
   LamConsole console = {.command = "plot"};
-  LamPlotRequest request = {.state = -1, .reporter = LamConsoleReporter(&console)};
+  LamPlotRequest request = {.state = LAM_PLOT_PEAK, .reporter = LamConsoleReporter(&console)};
   const char *input;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FIG.png|.svg|.pdf", "the picture (default: FILE.png)", &request.output},
-      {0, "state", LAM_OPTION_FROM_0, "N", "state of an RVE file, step of an fe2 file (default: the last one)",
+      {0, "state", LAM_OPTION_STATE, "N|last", "state of an RVE file, step of an fe2 file (default: at the peak load)",
        &request.state},
       {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/reference/pictures.md lists them)",
        &request.field},
+      {0, "strip", LAM_OPTION_FLAG, NULL, "up to eight states beside each other, with one colour scale",
+       &request.strip},
       {0, "film", LAM_OPTION_FLAG, NULL,
        "of a process: a page (PDF) or a numbered file for each state whose cells, or body, the file has",
        &request.film},
@@ -67,11 +69,11 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   PetscBool done;
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(
-      args,
-      "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N] [--field NAME] [--film] [--map MAP.h5]\n"
-      "                    [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE] [--accuracy SHARE] [--quiet]",
-      "Draws what the file holds.", options, 1, &input, &done, exit_status));
+  PetscCall(LamOptionsParse(args,
+                            "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N|last | --strip] [--field NAME] [--film]\n"
+                            "                    [--map MAP.h5] [--angle ANGLE] [--suction PRESSURE | --turgor "
+                            "PRESSURE] [--accuracy SHARE] [--quiet]",
+                            "Draws what the file holds.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!request.output) {
     PetscCall(DefaultOutput(input, sizeof name, name));

@@ -2,6 +2,7 @@
   Command line of a command: GNU conventions by getopt_long; the help is generated from the same table.
 */
 #include "app.h"
+#include "plot.h"
 #include "word_distance.h"
 #include <errno.h>
 #include <getopt.h>
@@ -85,7 +86,7 @@ PetscBool LamUsageError(const char command[], int *exit_status, const char forma
 
 static PetscBool ReadValue(const char command[], const LamOption *option, const char text[], int *exit_status)
 {
-  const int least = (int)option->type - LAM_OPTION_FROM_0;
+  const int least = PetscMax(0, (int)option->type - LAM_OPTION_FROM_0);
   char *end;
   long count;
 
@@ -101,6 +102,9 @@ static PetscBool ReadValue(const char command[], const LamOption *option, const 
     if (!*end && *(PetscReal *)option->value > 0) return PETSC_TRUE;
     return LamUsageError(command, exit_status, "--%s \"%s\": a relative error is wanted, such as 0.01, or inf for any",
                          option->long_name, text);
+  case LAM_OPTION_STATE:
+    *(PetscInt *)option->value = LAM_PLOT_LAST;
+    if (!strcmp(text, "last")) return PETSC_TRUE; /* fallthrough */
   default:
     errno = 0;
     count = strtol(text, &end, 10);

@@ -383,8 +383,8 @@ static PetscErrorCode DrawPage(const char path[], const Groups *groups, PetscInt
   PetscFunctionBeginUser;
   if (n % 2) notes.x += 30;
   PetscCall(LamCanvasCreate(path, LAM_PLOT_WIDTH, n % 2 ? bottom : bottom + NOTES_HEIGHT, &canvas));
-  LamLegend(canvas, (LamRect){MARGIN, MARGIN, LAM_PLOT_WIDTH - 2 * MARGIN, LEGEND_HEIGHT}, groups->n, groups->series,
-            PETSC_TRUE);
+  LamLegend(canvas, (LamRect){MARGIN, MARGIN, LAM_PLOT_WIDTH - 2 * MARGIN, LEGEND_HEIGHT}, LAM_TICK_SIZE, groups->n,
+            groups->series, PETSC_TRUE);
   for (PetscInt k = 0; k < n; k++) DrawPanel(canvas, Cell(k, top), &panels[k]);
   DrawNotes(canvas, notes);
   PetscCall(LamCanvasFinish(&canvas));

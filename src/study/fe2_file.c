@@ -215,6 +215,23 @@ static PetscErrorCode WriteFields(LamFE2File file, PetscInt step, const LamMacro
   PetscFunctionReturn(0);
 }
 
+/* Plates and indenters: positions and radius in mm, the direction as it is. */
+static PetscErrorCode WriteObstacles(LamFE2File file, const LamMacroStep *step)
+{
+  const PetscReal mm = file->scales.macro_length * 1e3;
+  const PetscInt dims[2] = {step->obstacle_count, 5};
+  PetscReal rows[LAM_MAX_BOUNDARIES][5];
+  char path[128];
+
+  PetscFunctionBeginUser;
+  if (!step->obstacle_count) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < 5 * step->obstacle_count; k++)
+    rows[k / 5][k % 5] = step->obstacle[k / 5][k % 5] * (k % 5 == 2 || k % 5 == 3 ? 1 : mm);
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/macro/step/%" PetscInt_FMT "/obstacles", step->step));
+  PetscCall(LamWriteRows(file->writer, path, 2, dims, rows[0], sizeof(rows[0]), 1, "mm"));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteSummary(LamFE2File file, const LamSummary *summary)
 {
   json_t *object = LamSummaryToJSON(summary);
@@ -281,6 +298,7 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscCall(LamRecordWriterBegin(file->writer));
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
   PetscCall(WriteFields(file, step->step, fields, &summary->strength));
+  PetscCall(WriteObstacles(file, step));
   PetscCall(LamListGrow(file->step_count, sizeof(PetscInt), &file->capacity, &file->steps));
   file->steps[file->step_count++] = step->step;
   PetscCall(LamCurveWrite(&summary->curve, file->writer));

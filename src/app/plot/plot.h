@@ -6,9 +6,10 @@
     plot_colour.c    colour map, limits of colour scales, colour bars
     plot_field.c     views of the plane, fields on meshes of quadratic elements, scale bars
     plot_interface.c gaps and contact pressure between cells
-    plot_tissue.c    cells of an RVE with their images (plot_tissue.h)
+    plot_tissue.c    cells of an RVE with their images (plot_tissue.h); plot_cells.c: at several states
     plot_outline.c   edges and closed outlines of such meshes
-    plot_curves.c    stress-load curves
+    plot_curves.c    stress-load curves, and the state at their peak
+    plot_strip.c     several states beside each other
     plot_read.c      arrays of a file, checked
     plot_time.c      quantities against time, films (plot_time.h)
     plot_rve.c, plot_fe2.c, plot_database.c, plot_map.c, plot_process.c    one kind of file each (plot_map_read.c: data)
@@ -72,7 +73,16 @@ void LamCanvasClip(LamCanvas canvas, LamRect rect);
 /* Text with its reference point at the fraction `align` (0 left, 0.5 centre, 1 right) of its width and at the middle
    of its capitals; `angle` in radian, counter-clockwise. */
 void LamCanvasText(LamCanvas canvas, double x, double y, double align, double angle, double size, const char text[]);
+/* The same, smaller where it would be longer than `room`; only where it lies on no earlier text of the page, which it
+   returns. */
+void LamCanvasTextFit(LamCanvas canvas, double x, double y, double align, double angle, double size, double room,
+                      const char text[]);
+PetscBool LamCanvasTextFree(LamCanvas canvas, double x, double y, double align, double angle, double size,
+                            const char text[]);
+/* For tests: called with each text drawn and its box on the page. */
+extern void (*LamPlotTextVisit)(const char text[], LamRect box);
 double LamCanvasTextWidth(LamCanvas canvas, double size, const char text[]);
+/* Smaller where it would leave the page. */
 void LamCanvasTitle(LamCanvas canvas, double x, double y, const char title[]);
 
 typedef enum {
@@ -139,7 +149,7 @@ double LamAxesX(const LamAxes *axes, PetscReal x);
 double LamAxesY(const LamAxes *axes, PetscReal y);
 /* Adds a point to the current path; joined: with a line from the last one. */
 void LamAxesPath(LamCanvas canvas, const LamAxes *axes, PetscReal x, PetscReal y, PetscBool joined);
-/* A vertical line across the frame, with a text along its left side (NULL: none). */
+/* A vertical line across the frame, with a text beside it where no other one is (NULL: none). */
 void LamAxesMark(LamCanvas canvas, const LamAxes *axes, PetscReal x, LamColour colour, PetscBool dashed,
                  const char text[]);
 /* Sets empty limits; extends them to a point, if it is finite. */
@@ -167,13 +177,14 @@ void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *serie
 /* The position of the next entry of a legend in rows; left and right end and height of a row, space after an entry. */
 typedef struct {
   double left, right, row, space, x, y;
+  double size; /* of its text */
 } LamPen;
 LamPen LamPenStart(LamRect outer, double row, double space);
 /* Draws the label of an entry if `draw`; `at`: for its sample, which is `sample` wide, vertically in the middle. */
 void LamPenEntry(LamCanvas canvas, LamPen *pen, double sample, const char label[], PetscBool draw, double at[2]);
-/* A legend in rows, from the top left corner of `outer`; series without a label are left out. Returns its height;
-   draws only if `draw`. */
-double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw);
+/* A legend in rows, from the top left corner of `outer`, its text of this size; series without a label are left out.
+   Returns its height; draws only if `draw`. */
+double LamLegend(LamCanvas canvas, LamRect outer, double size, PetscInt n, const LamSeries series[], PetscBool draw);
 /*
   Legend, axes and curves, one above the other, inside `outer`. `axes` holds labels and units; limits are computed from
   the series.
@@ -265,6 +276,29 @@ void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamIn
 /* Legend of the ribbons, from (x, y) to the right. */
 void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, const LamInterface *interface);
 
+/* ---- plot_strip.c ---- */
+/* What pictures of several states share: the window, and the colours of a field and of gaps. */
+typedef struct {
+  PetscReal box[4];
+  LamColourRange range, gaps;
+  PetscBool is_open;        /* there are gaps */
+  const char *label, *unit; /* of the field; borrowed */
+} LamFrame;
+/* Draws the colour bars at the right of `outer`; *view: of the rest. */
+void LamFrameDraw(LamCanvas canvas, LamRect outer, const LamFrame *frame, LamView *view);
+#define LAM_STRIP_PANELS 8
+/* The first, the last and the peak of n states, and others evenly between; returns their number. */
+PetscInt LamStripChoose(PetscInt n, PetscInt peak, PetscInt chosen[LAM_STRIP_PANELS]);
+/* `draw` draws panel k, and writes its title; `key` the legend, below the view. */
+typedef struct {
+  PetscInt count; /* of panels */
+  LamFrame frame;
+  PetscErrorCode (*draw)(LamCanvas canvas, const LamView *view, void *ctx, PetscInt k, size_t size, char title[]);
+  void (*key)(LamCanvas canvas, const LamView *view, void *ctx);
+  void *ctx;
+} LamStrip;
+PetscErrorCode LamStripDraw(const char output[], const LamStrip *strip);
+
 /* ---- plot_outline.c ---- */
 typedef struct {
   PetscInt start, middle, end; /* nodes; the element lies to the left */
@@ -328,6 +362,9 @@ typedef struct {
 /* values [n]: the load parameter of each state; keys are the state numbers. */
 PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                  const LamScales *scales, LamLoadAxis *axis, PetscReal values[]);
+/* The state at which the stress along the way of F has risen most since the first response, (P - P1) : (F - F1) over
+   ‖F - F1‖; the last one with a response where it does not rise. -1: none has a response. */
+PetscInt LamStressPeak(PetscInt n, const LamResponse records[]);
 /* Effective stresses P11, P12, P21, P22 over the states, inside `outer`, with bioyield and peak of the test's curve if
    it is over the same component. */
 PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const LamResponse records[],
@@ -337,10 +374,12 @@ PetscErrorCode LamStressChart(LamCanvas canvas, LamRect outer, PetscInt n, const
 /* Every picture is as wide as a journal page. */
 #define LAM_PLOT_WIDTH 504.0
 #define LAM_PLOT_HEIGHT 252.0
+enum { LAM_PLOT_PEAK = -1, LAM_PLOT_LAST = -2 };
 typedef struct {
   const char *input, *output;
-  PetscInt state;    /* -1: the last one */
+  PetscInt state;    /* a number, or one of LAM_PLOT_PEAK, LAM_PLOT_LAST */
   const char *field; /* NULL: the default for the kind of file */
+  PetscBool strip;   /* several states beside each other */
   PetscBool film;  /* for a process: all states whose cells are in the file, each on its own page or in its own file */
   const char *map; /* for a process: the file of a map on which its path is drawn; NULL: none */
   /* of a slice through a table, as given by the user; NULL, 0: chosen */

@@ -146,7 +146,13 @@ void LamAxesMark(LamCanvas canvas, const LamAxes *axes, PetscReal x, LamColour c
 
   LamCanvasLine(canvas, at, top + axes->frame.height, at, top);
   LamCanvasStroke(canvas, colour, 0.8, dashed ? MarkDash : NULL);
-  if (text) LamCanvasText(canvas, at - 5, top + 3, 1, M_PI_2, LAM_TICK_SIZE, text);
+  for (int k = 0; k < 6 && text; k++) { /* left and right of the line, at the top, in the middle, at the bottom */
+    const double align = 1 - 0.5 * (k / 2), y = top + 3 + 0.5 * (k / 2) * (axes->frame.height - 6);
+    const double side = k % 2 ? at + 5 : at - 5;
+
+    if (side < axes->frame.x + 4 || side > axes->frame.x + axes->frame.width - 4) continue;
+    if (LamCanvasTextFree(canvas, side, y, align, M_PI_2, LAM_TICK_SIZE, text)) return;
+  }
 }
 
 void LamAxesEmpty(LamAxes *axes)
@@ -231,12 +237,13 @@ void LamAxesDraw(LamCanvas canvas, const LamAxes *axes)
   for (int y = 0; y < 2; y++) DrawMinorTicks(canvas, axes, (PetscBool)!y);
   LamAxesFrame(canvas, axes);
   LamAxisLabel(&axes->x, sizeof label, label);
-  LamCanvasText(canvas, f.x + 0.5 * f.width,
-                f.y + f.height + TickLength + Gap + LAM_TICK_SIZE + Gap + 0.4 * LAM_TEXT_SIZE, 0.5, 0, LAM_TEXT_SIZE,
-                label);
+  LamCanvasTextFit(canvas, f.x + 0.5 * f.width,
+                   f.y + f.height + TickLength + Gap + LAM_TICK_SIZE + Gap + 0.4 * LAM_TEXT_SIZE, 0.5, 0, LAM_TEXT_SIZE,
+                   f.width, label);
   LamAxisLabel(&axes->y, sizeof label, label);
-  LamCanvasText(canvas, f.x - TickLength - Gap - LamTicksWidth(canvas, &axes->y.ticks) - Gap - 1 - 0.5 * LAM_TEXT_SIZE,
-                f.y + 0.5 * f.height, 0.5, M_PI_2, LAM_TEXT_SIZE, label);
+  LamCanvasTextFit(canvas,
+                   f.x - TickLength - Gap - LamTicksWidth(canvas, &axes->y.ticks) - Gap - 1 - 0.5 * LAM_TEXT_SIZE,
+                   f.y + 0.5 * f.height, 0.5, M_PI_2, LAM_TEXT_SIZE, f.height, label);
 }
 
 PetscErrorCode LamSeriesCreate(PetscInt n, LamSeries *series)
@@ -285,12 +292,13 @@ void LamSeriesDraw(LamCanvas canvas, const LamAxes *axes, const LamSeries *serie
 
 LamPen LamPenStart(LamRect outer, double row, double space)
 {
-  return (LamPen){outer.x, outer.x + outer.width, row, space, outer.x, outer.y + 0.5 * row};
+  return (LamPen){outer.x, outer.x + outer.width, row, space, outer.x, outer.y + 0.5 * row, LAM_TICK_SIZE};
 }
 
 void LamPenEntry(LamCanvas canvas, LamPen *pen, double sample, const char label[], PetscBool draw, double at[2])
 {
-  const double width = sample + Gap + LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label);
+  const double room = pen->right - pen->left - sample - Gap;
+  const double width = sample + Gap + PetscMin(room, LamCanvasTextWidth(canvas, pen->size, label));
 
   if (pen->x > pen->left && pen->x + width > pen->right) {
     pen->x = pen->left;
@@ -299,15 +307,16 @@ void LamPenEntry(LamCanvas canvas, LamPen *pen, double sample, const char label[
   at[0] = pen->x;
   at[1] = pen->y;
   LamCanvasSetColour(canvas, LamInk);
-  if (draw) LamCanvasText(canvas, pen->x + sample + Gap, pen->y, 0, 0, LAM_TICK_SIZE, label);
+  if (draw) LamCanvasTextFit(canvas, pen->x + sample + Gap, pen->y, 0, 0, pen->size, room, label);
   pen->x += width + pen->space;
 }
 
-double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries series[], PetscBool draw)
+double LamLegend(LamCanvas canvas, LamRect outer, double size, PetscInt n, const LamSeries series[], PetscBool draw)
 {
-  LamPen pen = LamPenStart(outer, 1.5 * LAM_TICK_SIZE, 7);
+  LamPen pen = LamPenStart(outer, 1.5 * size, 7);
   double at[2];
 
+  pen.size = size;
   for (PetscInt i = 0; i < n; i++) {
     const LamStyle *style = &series[i].style;
     const double sample = style->line ? 14 : 6;
@@ -325,16 +334,21 @@ double LamLegend(LamCanvas canvas, LamRect outer, PetscInt n, const LamSeries se
 
 void LamChart(LamCanvas canvas, LamRect outer, LamAxes *axes, PetscInt n, const LamSeries series[])
 {
-  double legend;
+  LamRect place = outer;
+  double legend, size = LAM_TICK_SIZE;
 
   LamAxesEmpty(axes);
   for (PetscInt i = 0; i < n; i++) LamSeriesExtend(&series[i], axes);
   LamAxisPad(&axes->x);
   LamAxisPad(&axes->y);
   LamAxesLayout(canvas, outer, axes); /* the legend is as wide as the frame */
-  legend = LamLegend(canvas, axes->frame, n, series, PETSC_FALSE) + Gap;
+  place.x = axes->frame.x;
+  place.width = axes->frame.width;
+  /* many sides with long names: smaller text, down to 3 points, leaves most of the height to the curves */
+  while (size > 3 && LamLegend(canvas, place, size, n, series, PETSC_FALSE) > 0.3 * outer.height) size *= 0.9;
+  legend = LamLegend(canvas, place, size, n, series, PETSC_FALSE) + Gap;
   LamAxesLayout(canvas, (LamRect){outer.x, outer.y + legend, outer.width, outer.height - legend}, axes);
-  LamLegend(canvas, (LamRect){axes->frame.x, outer.y, axes->frame.width, legend}, n, series, PETSC_TRUE);
+  LamLegend(canvas, place, size, n, series, PETSC_TRUE);
   LamAxesDraw(canvas, axes);
   for (PetscInt i = 0; i < n; i++) LamSeriesDraw(canvas, axes, &series[i]);
 }

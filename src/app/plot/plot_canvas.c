@@ -11,6 +11,8 @@
 #include "utf8.h"
 
 double LamPlotDPI = 400, LamPlotVectorDPI = 300;
+void (*LamPlotTextVisit)(const char text[], LamRect box);
+enum { MOST_TEXTS = 1024 }; /* remembered of a page, which has about a hundred */
 
 typedef enum { FORMAT_PNG, FORMAT_SVG, FORMAT_PDF, FORMAT_COUNT } Format;
 static const char *const FormatExtensions[] = {".png", ".svg", ".pdf"};
@@ -18,7 +20,10 @@ static const char *const FormatExtensions[] = {".png", ".svg", ".pdf"};
 struct LamCanvas_s {
   char path[PETSC_MAX_PATH_LEN];
   Format format;
-  double dots;              /* pixels per point of images on this page */
+  double width; /* of the page */
+  double dots;  /* pixels per point of images on this page */
+  LamRect texts[MOST_TEXTS];
+  int text_count;
   cairo_surface_t *surface; /* owned */
   cairo_t *cr;              /* owned */
   cairo_t *page;            /* the page's context while `cr` draws an image, else NULL; owned */
@@ -77,6 +82,7 @@ PetscErrorCode LamCanvasCreate(const char path[], double width, double height, L
   PetscCall(PetscNew(&c));
   PetscCall(FormatOfPath(path, &c->format));
   PetscCall(PetscStrncpy(c->path, path, sizeof c->path));
+  c->width = width;
   c->dots = (c->format == FORMAT_PNG ? LamPlotDPI : LamPlotVectorDPI) / 72;
   if (c->format == FORMAT_PNG)
     c->surface =
@@ -157,6 +163,7 @@ PetscBool LamCanvasHasPages(const char path[])
 
 void LamCanvasNextPage(LamCanvas canvas)
 {
+  canvas->text_count = 0;
   cairo_show_page(canvas->cr);
   cairo_set_source_rgb(canvas->cr, 1, 1, 1);
   cairo_paint(canvas->cr);
@@ -320,23 +327,58 @@ double LamCanvasTextWidth(LamCanvas canvas, double size, const char text[])
   return TextRuns(canvas->cr, size, text, PETSC_FALSE);
 }
 
+static const double CapitalHeight = 0.729; /* of the font size; DejaVu Sans, and within 3 % most sans fonts */
+
+/* The box of the capitals of a text that runs to the right or, at an angle, upwards. */
+static LamRect TextBox(LamCanvas canvas, double x, double y, double align, double angle, double size, const char text[])
+{
+  const double width = LamCanvasTextWidth(canvas, size, text), height = CapitalHeight * size;
+
+  return angle == 0 ? (LamRect){x - align * width, y - 0.5 * height, width, height}
+                    : (LamRect){x - 0.5 * height, y - (1 - align) * width, height, width};
+}
+
 void LamCanvasText(LamCanvas canvas, double x, double y, double align, double angle, double size, const char text[])
 {
-  const double capital_height = 0.729; /* of the font size; DejaVu Sans, and within 3 % most sans fonts */
+  const LamRect box = TextBox(canvas, x, y, align, angle, size, text);
 
+  if (canvas->text_count < MOST_TEXTS) canvas->texts[canvas->text_count++] = box;
+  if (LamPlotTextVisit) LamPlotTextVisit(text, box);
   cairo_save(canvas->cr);
   cairo_translate(canvas->cr, x, y);
   cairo_rotate(canvas->cr, -angle);
-  cairo_move_to(canvas->cr, -align * LamCanvasTextWidth(canvas, size, text), 0.5 * capital_height * size);
+  cairo_move_to(canvas->cr, -align * LamCanvasTextWidth(canvas, size, text), 0.5 * CapitalHeight * size);
   TextRuns(canvas->cr, size, text, PETSC_TRUE);
   cairo_restore(canvas->cr);
   cairo_new_path(canvas->cr);
 }
 
+void LamCanvasTextFit(LamCanvas canvas, double x, double y, double align, double angle, double size, double room,
+                      const char text[])
+{
+  const double width = LamCanvasTextWidth(canvas, size, text);
+
+  LamCanvasText(canvas, x, y, align, angle, width > room ? size * room / width : size, text);
+}
+
+PetscBool LamCanvasTextFree(LamCanvas canvas, double x, double y, double align, double angle, double size,
+                            const char text[])
+{
+  const LamRect a = TextBox(canvas, x, y, align, angle, size, text);
+
+  for (int k = 0; k < canvas->text_count; k++) {
+    const LamRect b = canvas->texts[k];
+
+    if (a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height) return PETSC_FALSE;
+  }
+  LamCanvasText(canvas, x, y, align, angle, size, text);
+  return PETSC_TRUE;
+}
+
 void LamCanvasTitle(LamCanvas canvas, double x, double y, const char title[])
 {
   LamCanvasSetColour(canvas, LamDarkInk);
-  LamCanvasText(canvas, x, y, 0, 0, LAM_TEXT_SIZE + 0.75, title);
+  LamCanvasTextFit(canvas, x, y, 0, 0, LAM_TEXT_SIZE + 0.75, canvas->width - 2 * x, title);
 }
 
 static void MarkerPath(LamCanvas canvas, double x, double y, double h, LamMarker marker)

@@ -129,6 +129,7 @@ void LamColourBar(LamCanvas canvas, LamRect frame, const LamColourRange *range, 
     LamCanvasText(canvas, right + TickLength + TextGap, y, 0, 0, LAM_TICK_SIZE, text);
   }
   LamAxisLabel(&axes.y, sizeof text, text);
-  LamCanvasText(canvas, right + TickLength + 2 * TextGap + LamTicksWidth(canvas, &axes.y.ticks) + 0.55 * LAM_TEXT_SIZE,
-                frame.y + 0.5 * frame.height, 0.5, M_PI_2, LAM_TEXT_SIZE, text);
+  LamCanvasTextFit(canvas,
+                   right + TickLength + 2 * TextGap + LamTicksWidth(canvas, &axes.y.ticks) + 0.55 * LAM_TEXT_SIZE,
+                   frame.y + 0.5 * frame.height, 0.5, M_PI_2, LAM_TEXT_SIZE, frame.height, text);
 }

@@ -125,6 +125,31 @@ PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const 
   PetscFunctionReturn(0);
 }
 
+PetscInt LamStressPeak(PetscInt n, const LamResponse records[])
+{
+  const LamResponse *first = NULL;
+  PetscReal largest = 0;
+  PetscInt peak = -1, last = -1;
+
+  for (PetscInt k = 0; k < n; k++) {
+    const LamResponse *r = &records[k];
+    PetscReal way[9], work = 0;
+
+    if (!LamResponseHasFields(r)) continue;
+    if (!first) first = r;
+    last = k;
+    for (int i = 0; i < 9; i++) {
+      way[i] = r->load.F[i] - first->load.F[i];
+      work += (r->P[i] - first->P[i]) * way[i];
+    }
+    /* free tissue swells without stress, up to rounding: 1e-6, as LamReactionsGet, of the stress of the fluid */
+    if (!(work > PetscMax(largest, 1e-6 * r->load.turgor) * Norm9(way))) continue;
+    largest = work / Norm9(way);
+    peak = k;
+  }
+  return peak < 0 ? last : peak;
+}
+
 /* Curves of P11, P12, P21, P22 in MPa, with gaps at states that did not converge. */
 static PetscErrorCode StressSeries(PetscInt n, const LamResponse records[], const PetscReal load[], PetscReal stress,
                                    LamSeries series[4])

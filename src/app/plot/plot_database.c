@@ -146,7 +146,8 @@ PetscErrorCode LamPlotDatabase(const LamPlotRequest *request)
   LamGrid grid;
 
   PetscFunctionBeginUser;
-  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a database is drawn as a whole");
+  PetscCheck(request->state == LAM_PLOT_PEAK, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--state: a database is drawn as a whole");
   PetscCall(LamDatabaseOpen(request->input, &database));
   PetscCall(LamDatabaseGetGrid(database, &grid));
   if (grid && !request->field)

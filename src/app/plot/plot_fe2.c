@@ -64,12 +64,14 @@ typedef struct {
   const FE2FieldRow *field;
   PetscInt step_count, *steps; /* numbers of the complete steps; owned */
   PetscInt row, step;          /* the step drawn: its index in `steps`, its number */
+  PetscInt peak;               /* row */
   PetscInt node_count, element_count;
   PetscReal *nodes, *x; /* [node][2], mm: reference and current; owned */
   PetscReal *values;    /* [element]; owned */
   PetscInt *elements;   /* owned */
   LamOutline outline;
   LamReactions reactions;
+  LamObstacles obstacles;
   LamZooms zooms;    /* of the last step */
   LamTimeLine times; /* of a process; else it has no states */
 } FE2Picture;
@@ -111,10 +113,8 @@ static PetscReal Evaluate(const FE2FieldRow *field, const PetscReal t[])
   }
 }
 
-/* The last complete step, or the requested one. */
-static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
+static PetscErrorCode ReadSteps(const char path[], FE2Picture *p)
 {
-  const char *path = request->input;
   PetscBool found;
   PetscInt rank, dims[4];
 
@@ -123,11 +123,19 @@ static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
   PetscCheck(found && rank == 1 && dims[0] > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: holds no complete load step to draw", path);
   p->step_count = dims[0];
-  p->row = dims[0] - 1;
+  PetscCall(LamReactionsRead(path, p->step_count, &p->reactions));
+  p->peak = LamReactionsPeak(&p->reactions);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindStep(const LamPlotRequest *request, FE2Picture *p)
+{
+  PetscFunctionBeginUser;
+  p->row = request->state == LAM_PLOT_PEAK ? p->peak : p->step_count - 1;
   while (request->state >= 0 && p->row >= 0 && p->steps[p->row] != request->state) p->row--;
   PetscCheck(p->row >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "--state %" PetscInt_FMT ": %s holds steps %" PetscInt_FMT " to %" PetscInt_FMT, request->state, path,
-             p->steps[0], p->steps[p->step_count - 1]);
+             "--state %" PetscInt_FMT ": %s holds steps %" PetscInt_FMT " to %" PetscInt_FMT, request->state,
+             request->input, p->steps[0], p->steps[p->step_count - 1]);
   PetscFunctionReturn(0);
 }
 
@@ -153,6 +161,7 @@ static PetscErrorCode LoadStep(const char path[], PetscInt row, FE2Picture *p)
   PetscCall(PetscMalloc1(p->element_count, &p->values));
   for (PetscInt e = 0; e < p->element_count; e++) p->values[e] = Evaluate(p->field, &rows[e * p->field->columns]);
   PetscCall(PetscFree(rows));
+  PetscCall(LamObstaclesRead(path, p->step, &p->obstacles));
   PetscFunctionReturn(0);
 }
 
@@ -164,11 +173,11 @@ static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(p, sizeof *p));
   PetscCall(FindField(request, &p->field));
+  PetscCall(ReadSteps(path, p));
   PetscCall(FindStep(request, p));
   PetscCall(LamPlotReadPoints(path, "/macro/nodes", -1, &p->node_count, &p->nodes));
   PetscCall(LamPlotReadElements(path, "/macro/elements", p->node_count, &p->element_count, &p->elements));
   PetscCall(LoadStep(path, p->row, p));
-  PetscCall(LamReactionsRead(path, p->step_count, &p->reactions));
   PetscCall(LamPlotHas(path, "/process/time", &is_process));
   if (is_process) PetscCall(LamTimeLineRead(path, p->step_count, &p->times));
   if (p->row == p->step_count - 1) PetscCall(LamZoomsRead(path, &p->zooms));
@@ -186,9 +195,21 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
   PetscCall(PetscFree(p->values));
   PetscCall(PetscFree(p->elements));
   PetscCall(LamReactionsDestroy(&p->reactions));
+  PetscCall(LamObstaclesDestroy(&p->obstacles));
   PetscCall(LamZoomsDestroy(&p->zooms));
   PetscCall(LamTimeLineDestroy(&p->times));
   PetscFunctionReturn(0);
+}
+
+/* Extends a box by the body, as it is and undeformed, and by obstacles. */
+static void ExtendBox(const FE2Picture *p, PetscReal box[4])
+{
+  PetscReal size[4] = LAM_EMPTY_BOX;
+
+  LamBoxExtend(size, p->node_count, p->nodes, NULL);
+  LamBoxExtend(box, 2, size, NULL); /* its corners */
+  LamBoxExtend(box, p->node_count, p->x, NULL);
+  LamObstaclesExtend(&p->obstacles, PetscMax(size[2] - size[0], size[3] - size[1]), box);
 }
 
 static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2Picture *p, const LamColourRange *range)
@@ -198,6 +219,7 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   const double per_element = sqrt(view->frame.width * view->frame.height / p->element_count); /* points */
 
   PetscFunctionBeginUser;
+  LamObstaclesDraw(canvas, view, &p->obstacles);
   PetscCall(LamFieldPaint(canvas, view, &field, range, 1, &image));
   /* grid lines of a finer mesh would hide the field */
   if (per_element > 4) LamOutlineInnerPath(canvas, view, &p->outline, p->x);
@@ -209,11 +231,23 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
   PetscFunctionReturn(0);
 }
 
+/* Scale bar and legend, below the view. */
+static void DrawKey(LamCanvas canvas, const LamView *view, const FE2Picture *p)
+{
+  const LamRect f = view->frame;
+  const double y = f.y + f.height + 11;
+  double x = f.x;
+
+  x += LamScaleBar(canvas, view, x, y, 0.18 * f.width, 1, "mm") + 10;
+  x += LamObstaclesKey(canvas, x, y, &p->obstacles);
+  LamUndeformedKey(canvas, x, f.x + f.width, y, "undeformed");
+}
+
 /* Draws the body with its colour bar and legend inside `outer`; *view is its view. With zooms the bar is on the
    left, so that it does not cross the lines to them. */
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
 {
-  double y, bar_width;
+  double bar_width;
   PetscReal box[4] = LAM_EMPTY_BOX;
   LamRect bar;
   LamColourRange range;
@@ -228,27 +262,33 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
     bar.x -= 6;
     outer.x += bar_width;
   }
-  LamBoxExtend(box, p->node_count, p->x, NULL);
-  LamBoxExtend(box, p->node_count, p->nodes, NULL);
+  ExtendBox(p, box);
   LamViewFit(outer, box, view);
   PetscCall(DrawBody(canvas, view, p, &range));
   LamColourBar(canvas, bar, &range, LamColourMap, p->field->label, p->field->unit);
-  y = outer.y + outer.height + 11;
-  LamScaleBar(canvas, view, outer.x, y, 0.18 * outer.width, 1, "mm");
-  LamUndeformedKey(canvas, outer.x + outer.width, y, "undeformed");
+  DrawKey(canvas, view, p);
   PetscFunctionReturn(0);
+}
+
+/* "Step 3 of 5, peak:  load factor 1". */
+static void Title(const FE2Picture *p, size_t size, char title[])
+{
+  const char *peak = p->row == p->peak ? ", peak" : "";
+  char factor[32];
+
+  LamFormatRatio(p->reactions.load[p->row], factor);
+  if (p->times.n)
+    LamTimeTitle(&p->times, p->row, size, title);
+  else
+    snprintf(title, size, "Step %" PetscInt_FMT " of %" PetscInt_FMT "%s%s:  load factor %s", p->step,
+             p->steps[p->step_count - 1], p->step ? "" : ", inflated", peak, factor);
 }
 
 static void DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
 {
-  char title[256], factor[32];
+  char title[256];
 
-  LamFormatRatio(p->reactions.load[p->row], factor);
-  if (p->times.n)
-    LamTimeTitle(&p->times, p->row, sizeof title, title);
-  else
-    snprintf(title, sizeof title, "Step %" PetscInt_FMT "%s:  load factor %s,  element means", p->step,
-             p->step ? "" : " (inflated)", factor);
+  Title(p, sizeof title, title);
   LamCanvasTitle(canvas, x, 12, title);
 }
 
@@ -351,31 +391,30 @@ static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
   PetscFunctionReturn(0);
 }
 
-/* ---- processes ---- */
+/* ---- several steps ---- */
 
 typedef struct {
   const char *path;
   FE2Picture *picture;
-  PetscInt first; /* row of the first frame */
+  PetscInt count, *rows; /* of the steps */
   LamFrame frame;
 } Film;
 
-/* The same window and colours in `count` frames. */
-static PetscErrorCode FindFrame(PetscInt count, Film *film)
+/* The same window and colours for all. */
+static PetscErrorCode FindFrame(Film *film)
 {
   FE2Picture *p = film->picture;
   PetscReal *values;
 
   PetscFunctionBeginUser;
   film->frame = (LamFrame){.box = LAM_EMPTY_BOX, .label = p->field->label, .unit = p->field->unit};
-  LamBoxExtend(film->frame.box, p->node_count, p->nodes, NULL);
-  PetscCall(PetscMalloc1(count * p->element_count, &values));
-  for (PetscInt k = 0; k < count; k++) {
-    PetscCall(LoadStep(film->path, film->first + k, p));
-    LamBoxExtend(film->frame.box, p->node_count, p->x, NULL);
+  PetscCall(PetscMalloc1(film->count * p->element_count, &values));
+  for (PetscInt k = 0; k < film->count; k++) {
+    PetscCall(LoadStep(film->path, film->rows[k], p));
+    ExtendBox(p, film->frame.box);
     PetscCall(PetscArraycpy(&values[k * p->element_count], p->values, p->element_count));
   }
-  PetscCall(LamColourRangeFind(count * p->element_count, values, &film->frame.range));
+  PetscCall(LamColourRangeFind(film->count * p->element_count, values, &film->frame.range));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
@@ -388,22 +427,46 @@ static PetscErrorCode DrawMoment(LamCanvas canvas, void *ctx, PetscInt k)
   LamView view;
 
   PetscFunctionBeginUser;
-  PetscCall(LoadStep(film->path, film->first + k, p));
+  PetscCall(LoadStep(film->path, film->rows[k], p));
   LamFrameBegin(canvas, &p->times, p->row, &film->frame, &view);
   PetscCall(DrawBody(canvas, &view, p, &film->frame.range));
-  LamScaleBar(canvas, &view, view.frame.x, view.frame.y + view.frame.height + 11, 0.25 * view.frame.width, 1, "mm");
+  DrawKey(canvas, &view, p);
   PetscCall(DrawTimes(canvas, LamFrameCharts(), p));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode DrawProcess(const LamPlotRequest *request, FE2Picture *p)
+/* As LamStrip.draw and key; ctx: a Film. */
+static PetscErrorCode DrawStep(LamCanvas canvas, const LamView *view, void *ctx, PetscInt k, size_t size, char title[])
 {
-  const PetscInt count = request->film ? p->step_count : 1;
-  Film film = {.path = request->input, .picture = p, .first = request->film ? 0 : p->row};
+  const Film *film = (const Film *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(FindFrame(count, &film));
-  PetscCall(LamFilmDraw(request, count, DrawMoment, &film));
+  PetscCall(LoadStep(film->path, film->rows[k], film->picture));
+  Title(film->picture, size, title);
+  PetscCall(DrawBody(canvas, view, film->picture, &film->frame.range));
+  PetscFunctionReturn(0);
+}
+
+static void DrawStripKey(LamCanvas canvas, const LamView *view, void *ctx)
+{
+  DrawKey(canvas, view, ((const Film *)ctx)->picture);
+}
+
+static PetscErrorCode DrawSeveral(const LamPlotRequest *request, FE2Picture *p)
+{
+  Film film = {.path = request->input, .picture = p, .count = request->film ? p->step_count : 1};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(PetscMax(p->step_count, LAM_STRIP_PANELS), &film.rows));
+  film.rows[0] = p->row;
+  for (PetscInt k = 0; k < film.count && request->film; k++) film.rows[k] = k;
+  if (request->strip) film.count = LamStripChoose(p->step_count, p->peak, film.rows);
+  PetscCall(FindFrame(&film));
+  if (request->strip)
+    PetscCall(LamStripDraw(request->output, &(LamStrip){film.count, film.frame, DrawStep, DrawStripKey, &film}));
+  else
+    PetscCall(LamFilmDraw(request, film.count, DrawMoment, &film));
+  PetscCall(PetscFree(film.rows));
   PetscFunctionReturn(0);
 }
 
@@ -411,9 +474,9 @@ static PetscErrorCode Draw(const LamPlotRequest *request, FE2Picture *p)
 {
   PetscFunctionBeginUser;
   PetscCheck(p->times.n || !request->film, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: is of load steps; --film draws files of process", request->input);
-  if (p->times.n && (!p->zooms.count || request->film || request->state >= 0))
-    PetscCall(DrawProcess(request, p));
+             "%s: is of load steps; --film draws files of process, --strip their steps", request->input);
+  if (request->strip || (p->times.n && (!p->zooms.count || request->film || request->state >= 0)))
+    PetscCall(DrawSeveral(request, p));
   else
     PetscCall(DrawFE2(request->output, p));
   PetscFunctionReturn(0);

@@ -1,6 +1,7 @@
 /*
   Pictures of FE2 runs: declarations shared by their parts. plot_fe2.c draws the body, its time histories and the page,
-  plot_fe2_curve.c the reactions, plot_zoom.c the microstructure at selected points.
+  plot_fe2_curve.c the reactions, plot_obstacle.c plates and indenters, plot_zoom.c the microstructure at selected
+  points.
 */
 #ifndef LAM_PLOT_FE2_H
 #define LAM_PLOT_FE2_H
@@ -15,6 +16,7 @@ typedef struct {
   PetscInt count;      /* of steps */
   PetscReal *load;     /* [step] load factor; owned */
   PetscReal *x;        /* [step] displacement of the loaded side, mm; owned; NULL: no loaded side, or an older file */
+  PetscReal *pull;     /* [step] the reaction along its displacement, N/mm; owned; NULL as x */
   PetscReal *reaction; /* [step][side][2], N/mm; owned */
   PetscInt side_count;
   char *sides;     /* names, one per line; owned */
@@ -28,9 +30,25 @@ PetscErrorCode LamReactionsDestroy(LamReactions *reactions);
    free component of a roller. */
 PetscBool LamReactionsGet(const LamReactions *reactions, PetscInt column, PetscReal values[],
                           char label[LAM_SERIES_LABEL]);
+/* The step with the largest force of the loaded side, or else the largest load factor. */
+PetscInt LamReactionsPeak(const LamReactions *reactions);
 /* Draws the reactions of all sides against the displacement of the loaded one, or else the load factor, and the
    onsets. */
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *reactions);
+
+/* ---- plot_obstacle.c ---- */
+typedef struct {
+  PetscInt count;
+  PetscReal *rows; /* [count][5] as in the file (docs/reference/files.md), mm and 1; owned */
+} LamObstacles;
+/* Reads those of a step in place of what `obstacles` has; none where the file has none. */
+PetscErrorCode LamObstaclesRead(const char path[], PetscInt step, LamObstacles *obstacles);
+PetscErrorCode LamObstaclesDestroy(LamObstacles *obstacles);
+/* Extends the box of a body of this size so that they are seen. */
+void LamObstaclesExtend(const LamObstacles *obstacles, PetscReal size, PetscReal box[4]);
+void LamObstaclesDraw(LamCanvas canvas, const LamView *view, const LamObstacles *obstacles);
+/* Their legend from (x, y) to the right; returns its width. */
+double LamObstaclesKey(LamCanvas canvas, double x, double y, const LamObstacles *obstacles);
 
 /* ---- plot_zoom.c ---- */
 #define LAM_PLOT_MAX_ZOOMS 3

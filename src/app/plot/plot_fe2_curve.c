@@ -39,7 +39,8 @@ static void SideName(const LamReactions *p, PetscInt side, size_t size, char nam
   snprintf(name, size, "%.*s", (int)PetscMin(strcspn(start, "\n"), size - 1), start);
 }
 
-/* Components of the loaded side's displacement along its direction; nothing if the summary names no loaded side. */
+/* Components of the loaded side's displacement and reaction along its direction; nothing if the summary names no loaded
+ * side. */
 static PetscErrorCode ReadDisplacement(const char path[], LamReactions *p)
 {
   const json_t *loaded = json_object_get(p->summary, "loaded"), *direction = json_object_get(loaded, "direction");
@@ -51,13 +52,16 @@ static PetscErrorCode ReadDisplacement(const char path[], LamReactions *p)
   if (!name) PetscFunctionReturn(0);
   PetscCall(ReadCurve(path, "/macro/curve/displacement", p->count, 2 * p->side_count, &u));
   PetscCall(PetscCalloc1(p->count, &p->x));
+  PetscCall(PetscCalloc1(p->count, &p->pull));
   for (PetscInt s = 0; s < p->side_count; s++) {
     SideName(p, s, sizeof side, side);
     if (strcmp(side, name)) continue;
     for (PetscInt k = 0; k < p->count; k++) {
       for (size_t i = 0; i < 2; i++) {
-        const PetscReal value = u[(k * p->side_count + s) * 2 + (PetscInt)i];
-        if (isfinite(value)) p->x[k] += json_number_value(json_array_get(direction, i)) * value;
+        const PetscInt column = (k * p->side_count + s) * 2 + (PetscInt)i;
+        const PetscReal along = json_number_value(json_array_get(direction, i));
+        if (isfinite(u[column])) p->x[k] += along * u[column];
+        p->pull[k] += along * p->reaction[column];
       }
     }
   }
@@ -89,6 +93,7 @@ PetscErrorCode LamReactionsDestroy(LamReactions *p)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(p->load));
   PetscCall(PetscFree(p->x));
+  PetscCall(PetscFree(p->pull));
   PetscCall(PetscFree(p->reaction));
   PetscCall(PetscFree(p->sides));
   json_decref(p->summary);
@@ -111,6 +116,16 @@ PetscBool LamReactionsGet(const LamReactions *p, PetscInt column, PetscReal valu
   SideName(p, column / 2, sizeof side, side);
   snprintf(label, LAM_SERIES_LABEL, "%.40s $R$_{%d}", side, (int)(column % 2 + 1));
   return (PetscBool) !(own < 1e-6 * largest);
+}
+
+PetscInt LamReactionsPeak(const LamReactions *p)
+{
+  const PetscReal *size = p->pull ? p->pull : p->load;
+  PetscInt peak = 0;
+
+  for (PetscInt k = 1; k < p->count; k++)
+    if (!(PetscAbsReal(size[k]) < PetscAbsReal(size[peak]))) peak = k; /* of equal ones the last */
+  return peak;
 }
 
 /* One colour per side; filled circles and full lines for component 1, hollow squares and dashes for component 2. */

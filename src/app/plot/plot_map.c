@@ -150,7 +150,7 @@ static void DrawContour(LamCanvas canvas, const LamAxes *axes, const LamMapPictu
       memcpy(at, middle, sizeof at);
     }
   LamCanvasStroke(canvas, LamInk, 0.7, NULL);
-  if (isfinite(best)) LamCanvasText(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
+  if (isfinite(best)) LamCanvasTextFree(canvas, at[0] + 2, at[1] - 4, 0, 0, LAM_TICK_SIZE - 1, text);
 }
 
 static PetscErrorCode DrawContours(LamCanvas canvas, const LamAxes *axes, const LamMapPicture *p)
@@ -209,6 +209,11 @@ static double DrawLegend(LamCanvas canvas, LamRect outer, const LamMapPicture *p
   LamPenEntry(canvas, &pen, LAM_TICK_SIZE, IsOfLoad(&p->x) || IsOfLoad(&p->y) ? "onset" : "load factor", PETSC_TRUE,
               at);
   DrawSample(canvas, at, NULL);
+  if (p->has_path) {
+    LamPenEntry(canvas, &pen, LAM_TICK_SIZE, "path of the tissue", PETSC_TRUE, at);
+    LamCanvasLine(canvas, at[0], at[1], at[0] + LAM_TICK_SIZE, at[1]);
+    LamCanvasStroke(canvas, LamPathColour, 1.3, NULL);
+  }
   return pen.y + 0.5 * pen.row - outer.y;
 }
 
@@ -275,7 +280,8 @@ PetscErrorCode LamPlotMap(const LamPlotRequest *request)
   LamCanvas canvas;
 
   PetscFunctionBeginUser;
-  PetscCheck(request->state < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "--state: a map is drawn as a whole");
+  PetscCheck(request->state == LAM_PLOT_PEAK, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "--state: a map is drawn as a whole");
   PetscCall(LamMapPictureRead(request, &picture));
   PetscCall(LamCanvasCreate(request->output, LAM_PLOT_WIDTH, LAM_PLOT_HEIGHT, &canvas));
   PetscCall(DrawPage(canvas, &picture));

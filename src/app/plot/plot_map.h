@@ -25,7 +25,9 @@ typedef struct {
   PetscReal *value;       /* [n] of the field; owned */
   const char *field, *unit;
   LamColourRange range;
+  PetscBool has_path; /* a path will be drawn over the modes: the legend names it */
 } LamMapPicture;
+static const LamColour LamPathColour = {0.75, 0.1, 0.1};
 
 /* ---- plot_map_read.c: PETSC_ERR_USER_INPUT if the file lacks data or the request does not fit ---- */
 PetscErrorCode LamMapRead(const char path[], LamMapPicture *picture); /* axes and modes alone */

@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const LamColour Path = {0.75, 0.1, 0.1};
-
 typedef struct {
   const char *path;     /* borrowed */
   LamDatabase database; /* owned */
@@ -123,103 +121,62 @@ static PetscErrorCode PlotCharts(const LamPlotRequest *request, Process *p)
   PetscFunctionReturn(0);
 }
 
-/* ---- films ---- */
+/* ---- films and strips ---- */
 
 typedef struct {
   Process *process;
-  const LamWallField *field;
-  LamFrame frame;
-  PetscInt count, *states; /* states whose cells are in the file; owned */
+  LamCells cells;
 } Film;
-
-static PetscErrorCode ReadCells(const Film *film, PetscInt k, LamTissue *tissue)
-{
-  const Process *p = film->process;
-  const PetscInt state = film->states[k];
-  char name[LAM_NAME_LENGTH];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT, state));
-  PetscCall(LamTissueRead(p->path, "/mesh", name, film->field, IsContact(p), p->of.records[state].load.F, tissue));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode FindStates(const LamPlotRequest *request, Film *film)
-{
-  const Process *p = film->process;
-  char name[LAM_NAME_LENGTH];
-  PetscBool has;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(p->of.n, &film->states));
-  for (PetscInt k = 0; k < p->of.n; k++) {
-    if (request->state >= 0 && k != request->state) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt_FMT "/x", k));
-    PetscCall(LamPlotHas(p->path, name, &has));
-    if (has) film->states[film->count++] = k;
-  }
-  PetscCheck(film->count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: holds no cells%s to draw; lamella process with --frames N keeps them", p->path,
-             request->state >= 0 ? " of this state" : "");
-  PetscFunctionReturn(0);
-}
-
-/* One colour scale and one window for all frames. */
-static PetscErrorCode FindFrame(Film *film)
-{
-  PetscReal *ends;
-  LamColourRange range;
-  LamTissue tissue;
-
-  PetscFunctionBeginUser;
-  film->frame = (LamFrame){.box = LAM_EMPTY_BOX, .label = film->field->label, .unit = film->field->unit};
-  PetscCall(PetscMalloc1(2 * film->count, &ends));
-  for (PetscInt k = 0; k < film->count; k++) {
-    PetscCall(ReadCells(film, k, &tissue));
-    PetscCall(LamColourRangeFind(tissue.node_count, tissue.values, &range));
-    ends[2 * k] = range.low;
-    ends[2 * k + 1] = range.high;
-    LamBoxExtend(film->frame.box, tissue.node_count, tissue.x, NULL);
-    PetscCall(LamTissueDestroy(&tissue));
-  }
-  PetscCall(LamColourRangeFind(2 * film->count, ends, &film->frame.range));
-  PetscCall(PetscFree(ends));
-  LamBoxWiden(film->frame.box, 1.1);
-  PetscFunctionReturn(0);
-}
 
 /* A LamFrameFunction; ctx: a Film. */
 static PetscErrorCode DrawFrame(LamCanvas canvas, void *ctx, PetscInt k)
 {
   const Film *film = (const Film *)ctx;
-  Process *p = film->process;
-  LamTissue tissue;
+  const PetscInt state = film->cells.states[k];
   LamView view;
-  double x, y;
 
   PetscFunctionBeginUser;
-  LamFrameBegin(canvas, &p->line, film->states[k], &film->frame, &view);
-  x = view.frame.x;
-  y = view.frame.y + view.frame.height;
-  PetscCall(ReadCells(film, k, &tissue));
-  PetscCall(LamTissueDraw(canvas, &view, &tissue, &film->frame.range, NULL));
-  LamScaleBar(canvas, &view, x, y + 11, 0.25 * view.frame.width, 1e-6 / p->of.scales.length, "µm");
-  if (tissue.has_interface) LamInterfaceDrawKey(canvas, x, y + 21, &tissue.interface);
-  PetscCall(LamTissueDestroy(&tissue));
-  PetscCall(DrawCharts(canvas, LamFrameCharts(), p, film->states[k]));
+  LamFrameBegin(canvas, &film->process->line, state, &film->cells.frame, &view);
+  PetscCall(LamCellsDraw(canvas, &view, &film->cells, k));
+  LamCellsKey(canvas, &view, &film->cells);
+  PetscCall(DrawCharts(canvas, LamFrameCharts(), film->process, state));
   PetscFunctionReturn(0);
+}
+
+/* As LamStrip.draw and key; ctx: a Film. */
+static PetscErrorCode DrawMoment(LamCanvas canvas, const LamView *view, void *ctx, PetscInt k, size_t size,
+                                 char title[])
+{
+  const Film *film = (const Film *)ctx;
+
+  PetscFunctionBeginUser;
+  LamTimeTitle(&film->process->line, film->cells.states[k], size, title);
+  PetscCall(LamCellsDraw(canvas, view, &film->cells, k));
+  PetscFunctionReturn(0);
+}
+
+static void DrawKey(LamCanvas canvas, const LamView *view, void *ctx)
+{
+  LamCellsKey(canvas, view, &((const Film *)ctx)->cells);
 }
 
 static PetscErrorCode PlotFilm(const LamPlotRequest *request, Process *p)
 {
   Film film = {.process = p};
+  LamCells *cells = &film.cells;
 
   PetscFunctionBeginUser;
-  PetscCall(LamWallFieldFind(request->field, &film.field));
-  PetscCall(FindStates(request, &film));
-  PetscCall(FindFrame(&film));
-  PetscCall(LamFilmDraw(request, film.count, DrawFrame, &film));
-  PetscCall(PetscFree(film.states));
+  PetscCall(LamCellsFind(p->path, &p->of, request->field, request->state, cells));
+  PetscCheck(cells->count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds no cells%s to draw; lamella process with --frames N keeps them", p->path,
+             request->state >= 0 ? " of this state" : "");
+  if (request->strip) LamCellsChoose(cells, p->of.n - 1);
+  PetscCall(LamCellsShare(cells));
+  if (request->strip)
+    PetscCall(LamStripDraw(request->output, &(LamStrip){cells->count, cells->frame, DrawMoment, DrawKey, &film}));
+  else
+    PetscCall(LamFilmDraw(request, cells->count, DrawFrame, &film));
+  PetscCall(LamCellsDestroy(cells));
   PetscFunctionReturn(0);
 }
 
@@ -251,16 +208,22 @@ static PetscErrorCode DrawPath(LamCanvas canvas, const LamAxes *axes, const LamM
   PetscCall(FindPositions(p, &map->y, &y));
   LamCanvasClip(canvas, axes->frame);
   for (PetscInt k = 0; k < p->of.n; k++) LamAxesPath(canvas, axes, x[k], y[k], (PetscBool)(k > 0));
-  LamCanvasStroke(canvas, Path, 1.3, NULL);
+  LamCanvasStroke(canvas, LamPathColour, 1.3, NULL);
   for (PetscInt k = 0; k < p->of.n; k++) {
     const double at[2] = {LamAxesX(axes, x[k]), LamAxesY(axes, y[k])};
 
     LamTimeEventName(&p->line, k, sizeof(name), name);
     if (k > 0 && k < p->of.n - 1 && !name[0]) continue;
-    LamCanvasSetColour(canvas, Path);
+    LamCanvasSetColour(canvas, LamPathColour);
     LamCanvasMarker(canvas, at[0], at[1], 4.2, name[0] ? LAM_MARKER_DIAMOND : LAM_MARKER_CIRCLE, (PetscBool)(k > 0));
     LamCanvasSetColour(canvas, LamDarkInk);
-    LamCanvasText(canvas, at[0] + 5, at[1] - 5, 0, 0, LAM_TICK_SIZE, name[0] ? name : k ? "end" : "start");
+    for (int side = 0; side < 4; side++)
+      if (LamCanvasTextFree(canvas, at[0] + (side % 2 ? -5 : 5), at[1] + (side / 2 ? 6 : -5), side % 2, 0,
+                            LAM_TICK_SIZE,
+                            name[0] ? name
+                            : k     ? "end"
+                                    : "start"))
+        break;
   }
   cairo_restore(LamCanvasCairo(canvas));
   PetscCall(PetscFree(x));
@@ -276,7 +239,7 @@ static PetscBool IsPressure(const LamMapSide *side)
 
 static PetscErrorCode PlotPath(const LamPlotRequest *request, Process *p)
 {
-  const LamPlotRequest of_map = {.input = request->map, .state = -1};
+  const LamPlotRequest of_map = {.input = request->map, .state = LAM_PLOT_PEAK};
   const double width = 0.55 * LAM_PLOT_WIDTH;
   LamMapPicture map;
   LamCanvas canvas;
@@ -284,6 +247,7 @@ static PetscErrorCode PlotPath(const LamPlotRequest *request, Process *p)
 
   PetscFunctionBeginUser;
   PetscCall(LamMapPictureRead(&of_map, &map));
+  map.has_path = PETSC_TRUE;
   PetscCheck(IsPressure(&map.x) && IsPressure(&map.y) && strcmp(map.x.quantity, map.y.quantity), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "--map %s: is of %s and %s; the way of a process is drawn over turgor and cohesion",
              request->map, map.x.quantity, map.y.quantity);
@@ -303,7 +267,7 @@ PetscErrorCode LamPlotProcess(const LamPlotRequest *request)
   PetscCall(Read(request->input, &p));
   if (request->map)
     PetscCall(PlotPath(request, &p));
-  else if (request->film || request->state >= 0)
+  else if (request->film || request->strip || request->state != LAM_PLOT_PEAK)
     PetscCall(PlotFilm(request, &p));
   else
     PetscCall(PlotCharts(request, &p));

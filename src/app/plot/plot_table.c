@@ -315,7 +315,7 @@ static void DrawHeader(LamCanvas canvas, const LamSlice *s)
            s->table_nodes == 1 ? "" : "s", contact ? "suction" : "turgor", load);
   LamCanvasSetColour(canvas, LamInk);
   LamCanvasText(canvas, 9, 12, 0, 0, LAM_TEXT_SIZE + 0.75, title);
-  DrawLegend(canvas, s, (LamPen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 1.6 * LAM_TICK_SIZE, 9, 9, 27});
+  DrawLegend(canvas, s, (LamPen){9, LAM_PLOT_WIDTH - 3.4 * GLYPH, 1.6 * LAM_TICK_SIZE, 9, 9, 27, LAM_TICK_SIZE});
   DrawGlyph(canvas, LAM_PLOT_WIDTH - 1.6 * GLYPH, 0.5 * HEADER + 2, s);
 }
 

@@ -154,7 +154,8 @@ static PetscErrorCode Draw(LamCanvas canvas, LamRect outer, const LamTimeLine *l
     LamTimeEventName(line, k, sizeof(name), name);
     LamAxesMark(canvas, &chart->axes, line->time[k] / line->seconds, Event, PETSC_TRUE, names ? name : NULL);
   }
-  if (now >= 0) LamAxesMark(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE, NULL);
+  if (now >= 0)
+    LamAxesMark(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE, names ? "shown" : NULL);
   for (PetscInt k = 0; k < chart->n; k++) PetscCall(LamSeriesDestroy(&chart->series[k]));
   PetscFunctionReturn(0);
 }
@@ -184,13 +185,12 @@ LamRect LamFrameCharts(void)
 
 void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, const LamFrame *frame, LamView *view)
 {
-  const LamRect picture = {9, 30, PictureWidth - LamColourBarWidth(canvas, &frame->range), LAM_TIME_HEIGHT - 60};
+  const LamRect picture = {9, 30, PictureWidth, LAM_TIME_HEIGHT - 60};
   char title[256];
 
   LamTimeTitle(line, state, sizeof(title), title);
   LamCanvasTitle(canvas, picture.x, 14, title);
-  LamViewFit(picture, frame->box, view);
-  LamColourBar(canvas, picture, &frame->range, LamColourMap, frame->label, frame->unit);
+  LamFrameDraw(canvas, picture, frame, view);
 }
 
 PetscErrorCode LamFilmDraw(const LamPlotRequest *request, PetscInt count, LamFrameFunction draw, void *ctx)

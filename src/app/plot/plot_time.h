@@ -55,13 +55,7 @@ PetscErrorCode LamTimeChartAddGroup(LamTimeChart *chart, LamTimeLine *line, cons
 PetscErrorCode LamTimeChartsDraw(LamCanvas canvas, LamRect outer, const LamTimeLine *line, LamTimeChart charts[4],
                                  PetscInt now);
 
-/* What the frames of a film share: the window of their pictures, and the colours. */
-typedef struct {
-  PetscReal box[4];
-  LamColourRange range;
-  const char *label, *unit; /* of the colours; borrowed */
-} LamFrame;
-/* Draws title and colour bar of a frame; *view: its picture. The charts are at the right. */
+/* Draws title and colour bars of a frame of a film; *view: its picture. The charts are at the right. */
 void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, const LamFrame *frame, LamView *view);
 LamRect LamFrameCharts(void);
 /* Draws the frames 0..count-1 as pages of a file, or as files: of "film.png" several become "film-0001.png" and so

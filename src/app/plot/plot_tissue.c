@@ -12,6 +12,7 @@ static const LamWallField Fields[] = {
 
 static const LamColour Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
 static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
+static const double ThinnestWall = 2;        /* points in which the colours of a wall are still told apart */
 
 const char *LamPlotRVEField(size_t i)
 {
@@ -113,6 +114,11 @@ static PetscErrorCode VisibleImages(const LamTissue *t, const LamView *view, Pet
   PetscFunctionReturn(0);
 }
 
+static PetscBool IsLumen(const LamTissue *t, PetscInt loop)
+{
+  return (PetscBool)(LamOutlineLoopArea(&t->outline, loop, t->nodes) < 0);
+}
+
 /* Path of the outer (or lumen) loops of one image, as far as they are visible. */
 static void LoopsPath(LamCanvas canvas, const LamView *view, const LamTissue *t, PetscBool lumens,
                       const PetscReal shift[2])
@@ -122,7 +128,7 @@ static void LoopsPath(LamCanvas canvas, const LamView *view, const LamTissue *t,
     const PetscInt first = t->outline.loop_start[k], end = t->outline.loop_start[k + 1];
     PetscReal box[4] = LAM_EMPTY_BOX;
 
-    if ((LamOutlineLoopArea(&t->outline, k, t->nodes) < 0) != lumens) continue;
+    if (IsLumen(t, k) != lumens) continue;
     for (PetscInt i = first; i < end; i++)
       LamBoxExtend(box, 1, &t->x[2 * t->outline.edges[t->outline.loop_edges[i]].start], NULL);
     if (LamViewShows(view, box, shift)) LamOutlineLoopPath(canvas, view, &t->outline, k, t->x, shift);
@@ -152,7 +158,7 @@ static void ReferencePath(LamCanvas canvas, const LamView *view, const LamTissue
   for (PetscInt k = 0; k < o->loop_count; k++) {
     PetscBool drawing = PETSC_FALSE;
 
-    if (LamOutlineLoopArea(o, k, t->nodes) < 0) continue;
+    if (IsLumen(t, k)) continue;
     for (PetscInt i = o->loop_start[k]; i < o->loop_start[k + 1]; i++) {
       const LamEdge *edge = &o->edges[o->loop_edges[i]];
       const PetscBool inside = HasPartner(t, edge);
@@ -174,20 +180,81 @@ void LamStrokeUndeformed(LamCanvas canvas)
   LamCanvasStroke(canvas, Reference, 0.9, (const double[]){3.5, 2.0});
 }
 
-void LamUndeformedKey(LamCanvas canvas, double right, double y, const char label[])
+void LamUndeformedKey(LamCanvas canvas, double left, double right, double y, const char label[])
 {
-  const double left = right - LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label) - 23;
+  const double sample = 19, gap = 4, room = right - left - 2 * gap - sample,
+               width = PetscMin(room, LamCanvasTextWidth(canvas, LAM_TICK_SIZE, label));
 
-  LamCanvasLine(canvas, left, y, left + 19, y);
+  LamCanvasLine(canvas, right - width - gap - sample, y, right - width - gap, y);
   LamStrokeUndeformed(canvas);
   LamCanvasSetColour(canvas, LamDarkInk);
-  LamCanvasText(canvas, right, y, 1, 0, LAM_TICK_SIZE, label);
+  LamCanvasTextFit(canvas, right, y, 1, 0, LAM_TICK_SIZE, room, label);
+}
+
+static PetscInt LoopCell(const LamTissue *t, PetscInt loop)
+{
+  return t->outline.edges[t->outline.loop_edges[t->outline.loop_start[loop]]].group;
+}
+
+/* Mean thickness of the wall inside an outer loop: its area over the length of the loop. */
+static PetscReal WallThickness(const LamTissue *t, PetscInt loop)
+{
+  const LamOutline *o = &t->outline;
+  PetscReal area = 0, length = 0;
+
+  for (PetscInt k = 0; k < o->loop_count; k++)
+    if (LoopCell(t, k) == LoopCell(t, loop)) area += LamOutlineLoopArea(o, k, t->x);
+  for (PetscInt i = o->loop_start[loop]; i < o->loop_start[loop + 1]; i++) {
+    const LamEdge *edge = &o->edges[o->loop_edges[i]];
+
+    length += hypot(t->x[2 * edge->end] - t->x[2 * edge->start], t->x[2 * edge->end + 1] - t->x[2 * edge->start + 1]);
+  }
+  return area / PetscMax(length, 1e-30);
+}
+
+/* Colours a wall as wide as the thinnest that is seen, inwards from its outer loop; values: at the middle of edges. */
+static void WidenWall(LamCanvas canvas, const LamView *view, const LamTissue *t, PetscInt loop,
+                      const LamColourRange *range, const LamImage *image)
+{
+  const LamOutline *o = &t->outline;
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  cairo_save(cr);
+  cairo_new_path(cr);
+  LamOutlineLoopPath(canvas, view, o, loop, t->x, image->shift);
+  cairo_clip(cr);
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND); /* no gaps at corners */
+  for (PetscInt i = o->loop_start[loop]; i < o->loop_start[loop + 1]; i++) {
+    const LamEdge *edge = &o->edges[o->loop_edges[i]];
+
+    LamOutlineEdgePath(canvas, view, edge, t->x, image->shift, PETSC_FALSE);
+    LamCanvasStroke(canvas, Fade(LamColourMap(LamColourShare(range, t->values[edge->middle])), image->fade),
+                    2 * ThinnestWall, NULL);
+  }
+  cairo_restore(cr);
+}
+
+/* The walls of one image that would be too thin to be seen. */
+static void WidenWalls(LamCanvas canvas, const LamView *view, const LamTissue *t, const LamColourRange *range,
+                       const LamImage *image)
+{
+  for (PetscInt k = 0; k < t->outline.loop_count; k++)
+    if (!IsLumen(t, k) && WallThickness(t, k) * view->scale < ThinnestWall) WidenWall(canvas, view, t, k, range, image);
+}
+
+/* Whether outlines of lumens, in the middle of widened walls, would hide their colours. */
+static PetscBool HasThinWalls(const LamTissue *t, const LamView *view)
+{
+  for (PetscInt k = 0; k < t->outline.loop_count; k++)
+    if (!IsLumen(t, k) && WallThickness(t, k) * view->scale < ThinnestWall) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *t, const LamColourRange *range,
                              const PetscReal reference[2])
 {
   const LamField field = {t->element_count, t->x, t->elements, t->values, PETSC_FALSE};
+  const PetscBool thin = HasThinWalls(t, view);
   LamImage *images;
   PetscInt count = 0;
 
@@ -202,10 +269,11 @@ PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTis
   for (PetscInt i = 0; i < count; i++) {
     const LamColour line = Fade(LamDarkInk, 0.8 * images[i].fade);
 
+    if (thin) WidenWalls(canvas, view, t, range, &images[i]);
     LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
-    LamCanvasStroke(canvas, line, 0.4, NULL);
+    if (!thin) LamCanvasStroke(canvas, line, 0.4, NULL);
     LoopsPath(canvas, view, t, PETSC_FALSE, images[i].shift);
-    LamCanvasStroke(canvas, line, images[i].fade > 0 ? 0.5 : 0.9, NULL);
+    LamCanvasStroke(canvas, line, thin ? 0.3 : images[i].fade > 0 ? 0.5 : 0.9, NULL);
   }
   if (reference) {
     ReferencePath(canvas, view, t, reference);

@@ -33,13 +33,40 @@ PetscBool LamTissueIsPeriodic(const LamTissue *tissue);
 /* Computes the shift of the reference for which both centroids coincide: a translation has no meaning in a periodic
    tissue. */
 void LamTissueCentreReference(const LamTissue *tissue, PetscReal shift[2]);
+/* Apothems around cells in a picture: the nearest neighbours are visible; of contact tissue a smaller part of them, to
+   show the gaps larger. */
+#define LAM_MARGIN 1.1
+#define LAM_CONTACT_MARGIN 0.5
+#define LAM_KEY_ROW 10.0 /* points between rows of a legend */
 /* Draws lumens, walls with their field, outlines, all inside the frame of the view. `reference`: shift of the
    undeformed outline; NULL: it is not drawn. */
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *tissue,
                              const LamColourRange *range, const PetscReal reference[2]);
-/* Strokes the current path with the dashes used for undeformed outlines; the legend of these, from `right` to the
-   left. */
+/* ---- plot_cells.c: states of a file whose cells it holds ---- */
+typedef struct {
+  const char *path;         /* borrowed, as the next */
+  const LamPlotRecords *of; /* all states of the file */
+  const LamWallField *field;
+  PetscInt count, *states; /* indices in `of`; owned */
+  LamFrame frame;
+  PetscReal pressure; /* the largest contact pressure */
+} LamCells;
+/* Finds the states; `state`: the number of the only one, LAM_PLOT_LAST, or LAM_PLOT_PEAK for all. */
+PetscErrorCode LamCellsFind(const char path[], const LamPlotRecords *of, const char field[], PetscInt state,
+                            LamCells *cells);
+/* Keeps as many as a strip has panels. peak: index in `of`. */
+void LamCellsChoose(LamCells *cells, PetscInt peak);
+/* Sets window and colours common to the states; reads number k of them. */
+PetscErrorCode LamCellsShare(LamCells *cells);
+PetscErrorCode LamCellsRead(const LamCells *cells, PetscInt k, LamTissue *tissue);
+/* Draws number k; scale bar and legend below it. */
+PetscErrorCode LamCellsDraw(LamCanvas canvas, const LamView *view, const LamCells *cells, PetscInt k);
+void LamCellsKey(LamCanvas canvas, const LamView *view, const LamCells *cells);
+PetscErrorCode LamCellsDestroy(LamCells *cells);
+
+/* Strokes the current path with the dashes used for undeformed outlines; the legend of these, at the right
+   between `left` and `right`. */
 void LamStrokeUndeformed(LamCanvas canvas);
-void LamUndeformedKey(LamCanvas canvas, double right, double y, const char label[]);
+void LamUndeformedKey(LamCanvas canvas, double left, double right, double y, const char label[]);
 
 #endif
