@@ -10,6 +10,7 @@
 #define FE2_FILE "test_plot_fe2.h5"
 #define DATABASE_FILE "test_plot_database.h5"
 #define MAP_FILE "test_plot_map.h5"
+#define SIDES 12 /* of the body */
 
 static LamScene Scene;
 
@@ -94,22 +95,28 @@ static void write_rve(void)
   CHECK(LamRecordWriterClose(&writer));
 }
 
-/* One element of 10 mm, sheared in two steps. */
+/* One element of 10 mm, sheared by plates and let go half-way; sides with long names. */
 static void write_fe2(void)
 {
   static const PetscReal nodes[9][2] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {5, 0}, {10, 5}, {5, 10}, {0, 5}, {5, 5}};
   const PetscInt elements[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, points[2] = {9, 2}, one[2] = {1, 9}, four[2] = {1, 4};
-  const PetscInt steps[3] = {0, 1, 2}, count[1] = {3}, curve[3] = {3, 2, 2};
+  const PetscInt steps[3] = {0, 1, 2}, count[1] = {3}, curve[3] = {3, SIDES, 2}, pair[2] = {2, 5};
   const PetscReal tensor[9] = {0.1, 0.2, 0, 0.2, 0.3, 0, 0, 0, 0.1}, indicator[4] = {0.7, 0, 0, 0.02},
-                  load[3] = {0, 0.5, 1};
-  const PetscReal reaction[3][2][2] = {{{0}}, {{-1, 0}, {1, 0}}, {{-2, 0.1}, {2, -0.1}}};
+                  load[3] = {0, 1, 0.5}, obstacles[2][5] = {{0, 10, 0, -1, 0}, {12, 5, -1, 0, 2}};
+  PetscReal reaction[3][SIDES][2] = {{{0}}};
+  char names[SIDES * 48] = "", side[48];
   LamRecordWriter writer;
   char name[64];
 
   CHECK(LamRecordWriterOpen(FE2_FILE, "fe2", LAM_WRITE_CREATE, &Scene, &writer));
   CHECK(LamRecordWriterReals(writer, "/macro/nodes", 2, points, &nodes[0][0], "mm"));
   CHECK(LamRecordWriterInts(writer, "/macro/elements", 2, one, elements));
-  CHECK(LamRecordWriterText(writer, "/macro/boundaries", "bottom\ntop\n"));
+  for (int s = 0; s < SIDES; s++) {
+    snprintf(side, sizeof side, "a_side_with_quite_a_long_name_%d\n", s);
+    strcat(names, side);
+    for (int k = 0; k < 6; k++) reaction[k / 2][s][k % 2] = load[k / 2] * (1 + s + k % 2);
+  }
+  CHECK(LamRecordWriterText(writer, "/macro/boundaries", names));
   for (int k = 0; k < 3; k++) {
     PetscReal u[9][2];
 
@@ -121,6 +128,8 @@ static void write_fe2(void)
     CHECK(LamRecordWriterReals(writer, name, 2, points, &u[0][0], "mm"));
     snprintf(name, sizeof name, "/macro/step/%d/cauchy", k);
     CHECK(LamRecordWriterReals(writer, name, 2, one, tensor, "MPa"));
+    snprintf(name, sizeof name, "/macro/step/%d/obstacles", k);
+    if (k) CHECK(LamRecordWriterReals(writer, name, 2, pair, &obstacles[0][0], "mm"));
     snprintf(name, sizeof name, "/macro/step/%d/indicator", k);
     CHECK(LamRecordWriterReals(writer, name, 2, four, indicator, "1"));
   }
@@ -241,9 +250,100 @@ TEST_IS(a_state_that_is_not_there_is_refused, refuses(LamPlotRVE, RVE_FILE, 7, N
 TEST_IS(a_state_without_an_answer_is_refused_with_its_reason, refuses(LamPlotRVE, RVE_FILE, 3, NULL, "limit load"));
 TEST_IS(an_unknown_field_is_refused_with_the_known_ones, refuses(LamPlotFE2, FE2_FILE, -1, "colour", "von_mises, "));
 TEST_IS(a_step_that_is_not_there_is_refused, refuses(LamPlotFE2, FE2_FILE, 9, NULL, "steps 0 to 2"));
-TEST_IS(a_field_that_the_file_lacks_is_refused, refuses(LamPlotFE2, FE2_FILE, -1, "P_12", "/macro/step/2/P"));
+TEST_IS(a_field_that_the_file_lacks_is_refused, refuses(LamPlotFE2, FE2_FILE, -1, "P_12", "/macro/step/1/P"));
 TEST_IS(a_field_that_no_record_has_is_refused, refuses(LamPlotMap, MAP_FILE, -1, "colour", "load_factor"));
 TEST_IS(a_state_of_a_database_is_refused, refuses(LamPlotDatabase, DATABASE_FILE, 1, NULL, "--state"));
+
+/* ---- texts ---- */
+
+static struct {
+  int n;
+  char text[256][256];
+  LamRect box[256];
+} Texts;
+
+static void keep_text(const char text[], LamRect box)
+{
+  assert_true(Texts.n < 256);
+  snprintf(Texts.text[Texts.n], sizeof Texts.text[0], "%s", text);
+  Texts.box[Texts.n++] = box;
+}
+
+/* Draws, and keeps the texts of the picture. */
+static void draw_texts(Plot plot, const char input[], PetscInt state, PetscBool strip)
+{
+  const LamPlotRequest request = {.input = input, .output = "test_plot_texts.pdf", .state = state, .strip = strip};
+
+  Texts.n = 0;
+  LamPlotTextVisit = keep_text;
+  CHECK(plot(&request));
+  LamPlotTextVisit = NULL;
+  remove(request.output);
+}
+
+/* How many texts start like this. */
+static int count_texts(const char start[])
+{
+  int count = 0;
+
+  for (int k = 0; k < Texts.n; k++) count += !strncmp(Texts.text[k], start, strlen(start));
+  return count;
+}
+
+/* The picture has as many texts that start with `start`. */
+static void shows(Plot plot, const char input[], PetscInt state, PetscBool strip, int count, const char start[])
+{
+  draw_texts(plot, input, state, strip);
+  assert_int_equal(count_texts(start), count);
+}
+
+TEST_IS(an_rve_is_drawn_at_the_peak, shows(LamPlotRVE, RVE_FILE, LAM_PLOT_PEAK, 0, 1, "State 2 of 3, peak:"));
+TEST_IS(the_title_tells_the_state, shows(LamPlotRVE, RVE_FILE, 1, 0, 1, "State 1 of 3:"));
+TEST_IS(a_body_is_drawn_at_the_peak, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_PEAK, 0, 1, "Step 1 of 2, peak:"));
+TEST_IS(the_last_step_can_be_drawn, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_LAST, 0, 1, "Step 2 of 2:"));
+TEST_IS(a_strip_of_an_rve_has_all_states_with_an_answer, shows(LamPlotRVE, RVE_FILE, LAM_PLOT_PEAK, 1, 2, "State "));
+TEST_IS(a_strip_of_a_body_has_all_steps, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_PEAK, 1, 3, "Step "));
+TEST_IS(the_legend_names_obstacles, shows(LamPlotFE2, FE2_FILE, 1, 0, 1, "rigid plate, indenter"));
+TEST_IS(the_legend_names_the_dashed_line, shows(LamPlotFE2, FE2_FILE, 1, 0, 1, "undeformed"));
+
+/* No text of the picture lies on another. */
+static void texts_are_apart(Plot plot, const char input[], PetscBool strip)
+{
+  draw_texts(plot, input, LAM_PLOT_PEAK, strip);
+  assert_true(Texts.n > 5);
+  for (int i = 0; i < Texts.n; i++) {
+    for (int k = 0; k < i; k++) {
+      const LamRect a = Texts.box[i], b = Texts.box[k];
+
+      if (a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height)
+        fail_msg("\"%s\" lies on \"%s\"", Texts.text[i], Texts.text[k]);
+    }
+  }
+}
+
+TEST_IS(texts_of_an_rve_are_apart, texts_are_apart(LamPlotRVE, RVE_FILE, PETSC_FALSE));
+TEST_IS(texts_of_a_strip_are_apart, texts_are_apart(LamPlotRVE, RVE_FILE, PETSC_TRUE));
+TEST_IS(texts_of_a_body_with_many_sides_are_apart, texts_are_apart(LamPlotFE2, FE2_FILE, PETSC_FALSE));
+TEST_IS(texts_of_a_database_are_apart, texts_are_apart(LamPlotDatabase, DATABASE_FILE, PETSC_FALSE));
+TEST_IS(texts_of_a_map_are_apart, texts_are_apart(LamPlotMap, MAP_FILE, PETSC_FALSE));
+
+TEST(a_strip_has_the_first_the_peak_and_the_last_of_many_states)
+{
+  PetscInt chosen[LAM_STRIP_PANELS];
+
+  for (PetscInt peak = 0; peak < 50; peak++) {
+    PetscBool has = PETSC_FALSE;
+
+    assert_int_equal(LamStripChoose(50, peak, chosen), LAM_STRIP_PANELS);
+    assert_int_equal(chosen[0], 0);
+    assert_int_equal(chosen[LAM_STRIP_PANELS - 1], 49);
+    for (int k = 0; k < LAM_STRIP_PANELS; k++) {
+      assert_true(!k || chosen[k] > chosen[k - 1]);
+      if (chosen[k] == peak) has = PETSC_TRUE;
+    }
+    assert_true(has);
+  }
+}
 
 TEST(an_output_that_cannot_be_written_is_an_error_of_output)
 {

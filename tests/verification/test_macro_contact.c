@@ -48,6 +48,27 @@ MACRO_TEST(ContactWidthIsHertz)
   assert_true(PetscAbsReal(square / hertz - 1) < 0.05);
 }
 
+/* A step reports the plate where its displacement has brought it, and the indenter above the node that it touches. */
+MACRO_TEST(StepsTellWhereObstaclesAre)
+{
+  LamBoundary *plate, *indenter;
+
+  FixtureScene(fixture, 4, 4, 1, 1);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  plate = FixtureAdd(fixture, "right", LAM_BOUNDARY_PLATE);
+  plate->displacement[0] = -0.05;
+  indenter = FixtureAdd(fixture, "top", LAM_BOUNDARY_INDENTER);
+  indenter->radius = 0.3;
+  indenter->at[0] = 0.5;
+  indenter->at[1] = 1;
+  indenter->displacement[1] = -0.04;
+  FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+  const LamMacroStep *step = &fixture->macro->step;
+  const PetscReal expected[2][5] = {{0.95, 0, -1, 0, 0}, {0.5, 1.26, 0, -1, 0.3}};
+  assert_int_equal(step->obstacle_count, 2);
+  for (int i = 0; i < 10; i++) assert_true(PetscAbsReal(step->obstacle[i / 5][i % 5] - expected[i / 5][i % 5]) < 1e-12);
+}
+
 /* No node is in the indenter, none is pulled, and all that are pressed touch it. */
 MACRO_TEST(ComplementarityHolds)
 {

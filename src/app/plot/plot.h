@@ -251,6 +251,7 @@ PetscErrorCode LamFieldPaint(LamCanvas canvas, const LamView *view, const LamFie
                              PetscInt image_count, const LamImage images[]);
 /* A scale bar of a round length, at most `width` wide, from (x, y) to the right; `unit_length` is the length of one
    `unit` in world coordinates. Returns the width used, including the label. */
+#define LAM_SCALE_BAR 52.0 /* points: half of the narrowest panel of a strip */
 double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, double width, PetscReal unit_length,
                    const char unit[]);
 

@@ -67,6 +67,7 @@ PetscErrorCode LamCellsShare(LamCells *cells)
     frame->is_open = (PetscBool)(frame->is_open || tissue.interface.is_open);
     frame->gaps.high = PetscMax(frame->gaps.high, tissue.interface.gaps.high);
     cells->pressure = PetscMax(cells->pressure, tissue.interface.largest_pressure);
+    cells->is_periodic = LamTissueIsPeriodic(&tissue);
     LamBoxExtend(frame->box, tissue.node_count, tissue.x, NULL);
     PetscCall(LamTissueDestroy(&tissue));
   }
@@ -94,7 +95,9 @@ void LamCellsKey(LamCanvas canvas, const LamView *view, const LamCells *cells)
   const LamInterface interface = {.largest_pressure = cells->pressure, .is_open = cells->frame.is_open};
   const double x = view->frame.x, y = view->frame.y + view->frame.height + 11;
 
-  LamScaleBar(canvas, view, x, y, 0.25 * view->frame.width, 1e-6 / cells->of->scales.length, "µm");
+  LamScaleBar(canvas, view, x, y, LAM_SCALE_BAR, 1e-6 / cells->of->scales.length, "µm");
+  if (cells->is_periodic)
+    LamCanvasText(canvas, x + view->frame.width, y, 1, 0, LAM_TICK_SIZE, "paler: periodic images");
   if (cells->of->micro.interface == LAM_INTERFACE_CONTACT) LamInterfaceDrawKey(canvas, x, y + LAM_KEY_ROW, &interface);
 }
 

@@ -238,7 +238,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, const FE2Picture *p)
   const double y = f.y + f.height + 11;
   double x = f.x;
 
-  x += LamScaleBar(canvas, view, x, y, 0.18 * f.width, 1, "mm") + 10;
+  x += LamScaleBar(canvas, view, x, y, LAM_SCALE_BAR, 1, "mm") + 10;
   x += LamObstaclesKey(canvas, x, y, &p->obstacles);
   LamUndeformedKey(canvas, x, f.x + f.width, y, "undeformed");
 }
@@ -289,7 +289,10 @@ static void DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)
   char title[256];
 
   Title(p, sizeof title, title);
-  LamCanvasTitle(canvas, x, 12, title);
+  if (p->times.n)
+    LamTimeTitleDraw(canvas, x, 12, &p->times, p->row);
+  else
+    LamCanvasTitle(canvas, x, 12, title);
 }
 
 /* ---- time histories ---- */

@@ -122,7 +122,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
   const LamRect f = view->frame;
   const double y = f.y + f.height + 11;
 
-  const double bar = LamScaleBar(canvas, view, f.x, y, 0.18 * f.width, 1e-6 / p->of.scales.length, "µm");
+  const double bar = LamScaleBar(canvas, view, f.x, y, LAM_SCALE_BAR, 1e-6 / p->of.scales.length, "µm");
 
   LamUndeformedKey(canvas, f.x + bar, right, y,
                    LamTissueIsPeriodic(&p->tissue) ? "undeformed;  paler: periodic images" : "undeformed");

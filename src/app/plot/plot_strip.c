@@ -47,6 +47,7 @@ static Layout Arrange(const LamStrip *strip)
   const PetscReal *box = strip->frame.box, shape = (box[3] - box[1]) / (box[2] - box[0]);
   Layout at = {.columns = strip->count <= LAM_STRIP_PANELS / 2 ? strip->count : (strip->count + 1) / 2};
 
+  if (shape < 0.5) at.columns = PetscMin(2, strip->count); /* so that the colour bar's label has room */
   at.rows = (strip->count + at.columns - 1) / at.columns;
   at.width = PanelWidth(&at, strip->frame.is_open ? 2 * UsualBar : UsualBar);
   /* a slender body keeps room for titles and ticks, a single panel makes no tall page */

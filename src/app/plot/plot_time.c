@@ -92,6 +92,15 @@ void LamTimeTitle(const LamTimeLine *line, PetscInt state, size_t size, char tit
   snprintf(title, size, "%s %s%s%s", number, line->unit, event[0] ? ": " : "", event);
 }
 
+void LamTimeTitleDraw(LamCanvas canvas, double x, double y, const LamTimeLine *line, PetscInt state)
+{
+  char title[256], text[300];
+
+  LamTimeTitle(line, state, sizeof title, title);
+  snprintf(text, sizeof text, "%s  (red line in the charts)", title);
+  LamCanvasTitle(canvas, x, y, text);
+}
+
 /* ---- charts ---- */
 
 PetscErrorCode LamTimeChartAdd(LamTimeChart *chart, const LamTimeLine *line, const PetscReal values[],
@@ -154,8 +163,7 @@ static PetscErrorCode Draw(LamCanvas canvas, LamRect outer, const LamTimeLine *l
     LamTimeEventName(line, k, sizeof(name), name);
     LamAxesMark(canvas, &chart->axes, line->time[k] / line->seconds, Event, PETSC_TRUE, names ? name : NULL);
   }
-  if (now >= 0)
-    LamAxesMark(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE, names ? "shown" : NULL);
+  if (now >= 0) LamAxesMark(canvas, &chart->axes, line->time[now] / line->seconds, Now, PETSC_FALSE, NULL);
   for (PetscInt k = 0; k < chart->n; k++) PetscCall(LamSeriesDestroy(&chart->series[k]));
   PetscFunctionReturn(0);
 }
@@ -186,10 +194,8 @@ LamRect LamFrameCharts(void)
 void LamFrameBegin(LamCanvas canvas, const LamTimeLine *line, PetscInt state, const LamFrame *frame, LamView *view)
 {
   const LamRect picture = {9, 30, PictureWidth, LAM_TIME_HEIGHT - 60};
-  char title[256];
 
-  LamTimeTitle(line, state, sizeof(title), title);
-  LamCanvasTitle(canvas, picture.x, 14, title);
+  LamTimeTitleDraw(canvas, picture.x, 14, line, state);
   LamFrameDraw(canvas, picture, frame, view);
 }
 

@@ -36,6 +36,8 @@ PetscBool LamTimeIsKnown(PetscInt n, const PetscReal values[]);
 /* The name of the event at a state, "" at others, with blanks for underscores; "14 day: turgor lost". */
 void LamTimeEventName(const LamTimeLine *line, PetscInt state, size_t size, char name[]);
 void LamTimeTitle(const LamTimeLine *line, PetscInt state, size_t size, char title[]);
+/* Draws the title of a picture with charts, in which a red line marks the state. */
+void LamTimeTitleDraw(LamCanvas canvas, double x, double y, const LamTimeLine *line, PetscInt state);
 
 /* A few series over time; initialise as {.axes.y = ...}. */
 typedef struct {

@@ -49,7 +49,8 @@ typedef struct {
   const LamWallField *field;
   PetscInt count, *states; /* indices in `of`; owned */
   LamFrame frame;
-  PetscReal pressure; /* the largest contact pressure */
+  PetscReal pressure;    /* the largest contact pressure */
+  PetscBool is_periodic; /* the tissue */
 } LamCells;
 /* Finds the states; `state`: the number of the only one, LAM_PLOT_LAST, or LAM_PLOT_PEAK for all. */
 PetscErrorCode LamCellsFind(const char path[], const LamPlotRecords *of, const char field[], PetscInt state,

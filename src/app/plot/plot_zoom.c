@@ -190,8 +190,7 @@ PetscErrorCode LamZoomsDraw(LamCanvas canvas, LamRect outer, const LamView *body
   }
   for (PetscInt k = 0; k < z->count; k++) DrawMarker(canvas, body, &z->position[2 * k]);
   LamColourBar(canvas, all, &z->stress, LamColourMap, "largest principal Cauchy stress of walls", "MPa");
-  LamScaleBar(canvas, &view, all.x, all.y + all.height + 11, 0.3 * all.width, 1 / z->apothem[order[z->count - 1]],
-              "µm");
+  LamScaleBar(canvas, &view, all.x, all.y + all.height + 11, LAM_SCALE_BAR, 1 / z->apothem[order[z->count - 1]], "µm");
   if (z->has_interface) LamInterfaceDrawKey(canvas, all.x, all.y + all.height + 11 + KeyRow, &z->tissue[0].interface);
   if (!z->is_open) PetscFunctionReturn(0);
   all.width += LamColourBarWidth(canvas, &z->stress);
