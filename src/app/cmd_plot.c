@@ -83,6 +83,9 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   request.input = input;
   PetscCall(LamFileReadKind(input, kind));
   if (strcmp(kind, "database")) PetscCall(LamSliceRefuse(&request));
+  PetscCheck(!request.strip || !strcmp(kind, "rve") || !strcmp(kind, "fe2") || !strcmp(kind, "process"),
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: is of kind \"%s\"; --strip draws files of rve, fe2 and process", input, kind);
   PetscCheck(!strcmp(kind, "process") || ((!request.film || !strcmp(kind, "fe2")) && !request.map), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT, "%s: is of kind \"%s\"; --film and --map draw files of process", input, kind);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(Plots); i++) {

@@ -52,3 +52,9 @@ grep -qF absent.h5 err.txt || fail "the message does not name the file that is n
 echo "not HDF5" >text.h5
 "$lamella" plot text.h5 >out.txt 2>err.txt && fail "a text file is drawn"
 [ ! -e text.png ] || fail "a picture of a text file was written"
+
+# the last state, and states side by side
+expect 0 "$lamella" plot rve.h5 --state last -o last.png
+expect 0 "$lamella" plot rve.h5 --strip -o strip.png
+expect 0 "$lamella" plot fe2.h5 --strip -o strip.pdf
+expect 2 -e "--strip" "$lamella" plot database.h5 --strip

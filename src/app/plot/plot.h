@@ -305,6 +305,7 @@ typedef struct {
   PetscInt start, middle, end; /* nodes; the element lies to the left */
   PetscInt group;
   PetscBool boundary; /* no second element of the group has this edge */
+  PetscInt element;   /* the one to its left */
 } LamEdge;
 typedef struct {
   PetscInt edge_count;
@@ -364,7 +365,7 @@ typedef struct {
 PetscErrorCode LamLoadAxisChoose(PetscInt n, const LamResponse records[], const PetscInt64 keys[],
                                  const LamScales *scales, LamLoadAxis *axis, PetscReal values[]);
 /* The state at which the stress along the way of F has risen most since the first response, (P - P1) : (F - F1) over
-   ‖F - F1‖; the last one with a response where it does not rise. -1: none has a response. */
+   ‖F - F1‖; -1: it does not rise. */
 PetscInt LamStressPeak(PetscInt n, const LamResponse records[]);
 /* Effective stresses P11, P12, P21, P22 over the states, inside `outer`, with bioyield and peak of the test's curve if
    it is over the same component. */

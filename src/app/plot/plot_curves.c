@@ -129,7 +129,7 @@ PetscInt LamStressPeak(PetscInt n, const LamResponse records[])
 {
   const LamResponse *first = NULL;
   PetscReal largest = 0;
-  PetscInt peak = -1, last = -1;
+  PetscInt peak = -1;
 
   for (PetscInt k = 0; k < n; k++) {
     const LamResponse *r = &records[k];
@@ -137,7 +137,6 @@ PetscInt LamStressPeak(PetscInt n, const LamResponse records[])
 
     if (!LamResponseHasFields(r)) continue;
     if (!first) first = r;
-    last = k;
     for (int i = 0; i < 9; i++) {
       way[i] = r->load.F[i] - first->load.F[i];
       work += (r->P[i] - first->P[i]) * way[i];
@@ -147,7 +146,7 @@ PetscInt LamStressPeak(PetscInt n, const LamResponse records[])
     largest = work / Norm9(way);
     peak = k;
   }
-  return peak < 0 ? last : peak;
+  return peak;
 }
 
 /* Curves of P11, P12, P21, P22 in MPa, with gaps at states that did not converge. */

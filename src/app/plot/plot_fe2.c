@@ -270,7 +270,7 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   PetscFunctionReturn(0);
 }
 
-/* "Step 3 of 5, peak:  load factor 1". */
+/* "Step 3, peak:  load factor 1". */
 static void Title(const FE2Picture *p, size_t size, char title[])
 {
   const char *peak = p->row == p->peak ? ", peak" : "";
@@ -280,8 +280,8 @@ static void Title(const FE2Picture *p, size_t size, char title[])
   if (p->times.n)
     LamTimeTitle(&p->times, p->row, size, title);
   else
-    snprintf(title, size, "Step %" PetscInt_FMT " of %" PetscInt_FMT "%s%s:  load factor %s", p->step,
-             p->steps[p->step_count - 1], p->step ? "" : ", inflated", peak, factor);
+    snprintf(title, size, "Step %" PetscInt_FMT "%s%s:  load factor %s", p->step, p->step ? "" : ", inflated", peak,
+             factor);
 }
 
 static void DrawTitle(LamCanvas canvas, double x, const FE2Picture *p)

@@ -32,7 +32,7 @@ static int CompareStarts(const void *a, const void *b)
 /* The boundary edge of the group that starts at `node`, among the first n edges sorted by CompareStarts; -1: none. */
 static PetscInt FindStart(PetscInt n, const LamEdge edges[], PetscInt group, PetscInt node)
 {
-  const LamEdge wanted = {node, -1, -1, group, PETSC_TRUE};
+  const LamEdge wanted = {node, -1, -1, group, PETSC_TRUE, -1};
   const LamEdge *found = (const LamEdge *)bsearch(&wanted, edges, (size_t)n, sizeof *edges, CompareStarts);
 
   return found ? (PetscInt)(found - edges) : -1;
@@ -77,7 +77,7 @@ PetscErrorCode LamOutlineCreate(PetscInt element_count, const PetscInt elements[
 
     for (int k = 0; k < corners; k++)
       edges[total++] =
-          (LamEdge){nodes[k], nodes[corners + k], nodes[(k + 1) % corners], groups ? groups[e] : 0, PETSC_TRUE};
+          (LamEdge){nodes[k], nodes[corners + k], nodes[(k + 1) % corners], groups ? groups[e] : 0, PETSC_TRUE, e};
   }
   qsort(edges, (size_t)total, sizeof *edges, CompareEdges);
   for (PetscInt i = 0; i < total; i++) {

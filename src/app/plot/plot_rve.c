@@ -7,14 +7,14 @@
 typedef struct {
   LamDatabase database; /* owned */
   LamPlotRecords of;    /* the states */
-  PetscInt index, peak; /* of the state drawn, of the peak of the stress */
+  PetscInt index, peak; /* of the state drawn, of the peak of the stress, -1: none */
   const LamWallField *field;
   LamTissue tissue;
   LamScene *scene; /* that the file was made of; NULL: unknown; owned */
   LamTest test;
 } RVEPicture;
 
-/* The requested state. */
+/* The requested state, or the last one where there is no peak. */
 static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
 {
   PetscInt i = p->of.n - 1;
@@ -23,11 +23,11 @@ static PetscErrorCode FindState(const LamPlotRequest *request, RVEPicture *p)
   PetscCheck(p->of.n > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no states", request->input);
   p->peak = LamStressPeak(p->of.n, p->of.records);
   if (request->state < 0) {
-    PetscCheck(p->peak >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+    while (i >= 0 && !LamResponseHasFields(&p->of.records[i])) i--;
+    PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%s: no state has a response to draw; the first is %s: %s", request->input,
                LamStatusNames[p->of.records[0].status], p->of.records[0].reason);
-    while (!LamResponseHasFields(&p->of.records[i])) i--;
-    if (request->state == LAM_PLOT_PEAK) i = p->peak;
+    if (request->state == LAM_PLOT_PEAK && p->peak >= 0) i = p->peak;
   } else {
     while (i >= 0 && p->of.keys[i] != request->state) i--;
     PetscCheck(i >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -93,15 +93,15 @@ static PetscErrorCode ReadTest(const char path[], RVEPicture *p)
   PetscFunctionReturn(0);
 }
 
-/* "State 5 of 9, peak:  F = [1, 0.3; 0, 1],  p = 0.02 MPa" */
+/* "State 5, peak:  F = [1, 0.3; 0, 1],  p = 0.02 MPa" */
 static void Title(const RVEPicture *p, size_t size, char title[])
 {
   const LamResponse *response = &p->of.records[p->index];
   const PetscReal *F = response->load.F, MPa = p->of.scales.stress * 1e-6;
   const PetscBool plane = (PetscBool)(F[2] == 0 && F[5] == 0 && F[6] == 0 && F[7] == 0 && F[8] == 1);
   const int n = plane ? 2 : 3;
-  size_t at = (size_t)snprintf(title, size, "State %" PetscInt64_FMT " of %" PetscInt64_FMT "%s:  $F$ = [",
-                               p->of.keys[p->index], p->of.keys[p->of.n - 1], p->index == p->peak ? ", peak" : "");
+  size_t at = (size_t)snprintf(title, size, "State %" PetscInt64_FMT "%s:  $F$ = [", p->of.keys[p->index],
+                               p->index == p->peak ? ", peak" : "");
   char number[32];
 
   for (int k = 0; k < n * n; k++) {

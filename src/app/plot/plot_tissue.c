@@ -12,7 +12,7 @@ static const LamWallField Fields[] = {
 
 static const LamColour Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
 static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
-static const double ThinnestWall = 2;        /* points in which the colours of a wall are still told apart */
+static const double ThinnestWall = 1.5;      /* points in which the colours of a wall are still told apart */
 
 const char *LamPlotRVEField(size_t i)
 {
@@ -212,7 +212,17 @@ static PetscReal WallThickness(const LamTissue *t, PetscInt loop)
   return area / PetscMax(length, 1e-30);
 }
 
-/* Colours a wall as wide as the thinnest that is seen, inwards from its outer loop; values: at the middle of edges. */
+static PetscReal ElementMean(const LamTissue *t, PetscInt element)
+{
+  const PetscInt *nodes = &t->elements[9 * element];
+  const int n = LamElementNodes(nodes);
+  PetscReal sum = 0;
+
+  for (int a = 0; a < n; a++) sum += t->values[nodes[a]];
+  return sum / n;
+}
+
+/* Colours a wall as wide as the thinnest that is seen, inwards from its outer loop, by the means of its elements. */
 static void WidenWall(LamCanvas canvas, const LamView *view, const LamTissue *t, PetscInt loop,
                       const LamColourRange *range, const LamImage *image)
 {
@@ -228,7 +238,7 @@ static void WidenWall(LamCanvas canvas, const LamView *view, const LamTissue *t,
     const LamEdge *edge = &o->edges[o->loop_edges[i]];
 
     LamOutlineEdgePath(canvas, view, edge, t->x, image->shift, PETSC_FALSE);
-    LamCanvasStroke(canvas, Fade(LamColourMap(LamColourShare(range, t->values[edge->middle])), image->fade),
+    LamCanvasStroke(canvas, Fade(LamColourMap(LamColourShare(range, ElementMean(t, edge->element))), image->fade),
                     2 * ThinnestWall, NULL);
   }
   cairo_restore(cr);
@@ -242,19 +252,23 @@ static void WidenWalls(LamCanvas canvas, const LamView *view, const LamTissue *t
     if (!IsLumen(t, k) && WallThickness(t, k) * view->scale < ThinnestWall) WidenWall(canvas, view, t, k, range, image);
 }
 
-/* Whether outlines of lumens, in the middle of widened walls, would hide their colours. */
-static PetscBool HasThinWalls(const LamTissue *t, const LamView *view)
+/* The thinnest wall, in points. */
+static double LeastThickness(const LamTissue *t, const LamView *view)
 {
+  double least = PETSC_MAX_REAL;
+
   for (PetscInt k = 0; k < t->outline.loop_count; k++)
-    if (!IsLumen(t, k) && WallThickness(t, k) * view->scale < ThinnestWall) return PETSC_TRUE;
-  return PETSC_FALSE;
+    if (!IsLumen(t, k)) least = PetscMin(least, WallThickness(t, k) * view->scale);
+  return least;
 }
 
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *t, const LamColourRange *range,
                              const PetscReal reference[2])
 {
   const LamField field = {t->element_count, t->x, t->elements, t->values, PETSC_FALSE};
-  const PetscBool thin = HasThinWalls(t, view);
+  const double thickness = LeastThickness(t, view), widest = 0.25 * PetscMax(thickness, ThinnestWall);
+  const PetscBool thin =
+      (PetscBool)(thickness < ThinnestWall); /* lumens' outlines would be in the middle of the wall */
   LamImage *images;
   PetscInt count = 0;
 
@@ -271,9 +285,9 @@ PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTis
 
     if (thin) WidenWalls(canvas, view, t, range, &images[i]);
     LoopsPath(canvas, view, t, PETSC_TRUE, images[i].shift);
-    if (!thin) LamCanvasStroke(canvas, line, 0.4, NULL);
+    if (!thin) LamCanvasStroke(canvas, line, PetscMin(0.4, 0.5 * widest), NULL);
     LoopsPath(canvas, view, t, PETSC_FALSE, images[i].shift);
-    LamCanvasStroke(canvas, line, thin ? 0.3 : images[i].fade > 0 ? 0.5 : 0.9, NULL);
+    LamCanvasStroke(canvas, line, PetscMin(widest, images[i].fade > 0 ? 0.5 : 0.9), NULL);
   }
   if (reference) {
     ReferencePath(canvas, view, t, reference);
