@@ -70,7 +70,7 @@ typedef struct {
   size_t size; /* of an item, bytes */
 } Member;
 
-enum { MEMBERS = 14, FIELDS = LAM_POINT_FIELD_COUNT };
+enum { MEMBERS = 15, FIELDS = LAM_POINT_FIELD_COUNT };
 
 /* All but first_point. */
 static void ListMembers(LamMacroFields *f, Member members[MEMBERS])
@@ -79,6 +79,7 @@ static void ListMembers(LamMacroFields *f, Member members[MEMBERS])
   const Member list[MEMBERS] = {
       {(void **)&f->nodes, NODE, 2 * real},
       {(void **)&f->u, NODE, 2 * real},
+      {(void **)&f->gripped, NODE, sizeof(PetscInt)},
       {(void **)&f->elements, ELEMENT, LAM_FIELD_NODES * sizeof(PetscInt)},
       {(void **)&f->F, ELEMENT, 9 * real},
       {(void **)&f->P, ELEMENT, 9 * real},
@@ -146,6 +147,19 @@ static PetscErrorCode GatherKind(LamMacro macro, Kind kind, PetscInt n, PetscSFN
 
 /* ---- the fields of one rank ---- */
 
+static PetscInt IsGripped(LamMacro macro, PetscInt point)
+{
+  const LamMacroSpec *spec = &macro->scene->macro;
+
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    const LamBoundary *boundary = &spec->boundary[b];
+    const PetscBool held =
+        (PetscBool)(boundary->kind == LAM_BOUNDARY_DISPLACEMENT && boundary->given[0] && boundary->given[1]);
+    if ((held || boundary->kind == LAM_BOUNDARY_GRIP) && LamMacroIsOn(macro, point, boundary->on)) return 1;
+  }
+  return 0;
+}
+
 static PetscErrorCode CollectNodes(LamMacro macro, LamMacroFields *own, PetscSFNode to[])
 {
   const PetscScalar *u;
@@ -155,6 +169,7 @@ static PetscErrorCode CollectNodes(LamMacro macro, LamMacroFields *own, PetscSFN
   for (PetscInt k = 0; k < macro->node_count; k++) {
     const LamMacroNode *node = &macro->nodes[k];
     to[k].index = node->number;
+    own->gripped[k] = IsGripped(macro, node->point);
     for (int i = 0; i < 2; i++) {
       own->nodes[2 * k + i] = node->X[i];
       own->u[2 * k + i] = PetscRealPart(u[node->local + i]);

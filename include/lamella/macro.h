@@ -194,6 +194,7 @@ LAM_EXPORT PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscR
   undistributed mesh; free them with LamMacroFieldsDestroy. All nondimensional. n: LAM_POINT_FIELD_COUNT.
     nodes       [node_count][2]       reference positions
     u           [node_count][2]       displacement
+    gripped     [node_count]              1: on a side all of whose displacement is prescribed, or with a grip; else 0
     elements    [element_count][LAM_FIELD_NODES]  VTK's order: corners, mid-edges, centre; of a triangle six, then -1
     F, P        [element_count][9]    mean over the element's points, row-major 3x3
     cauchy      [element_count][9]    mean of P F^T / J over the element's current volume
@@ -213,7 +214,7 @@ typedef struct {
   PetscInt node_count, element_count, point_count;
   PetscReal *nodes, *u, *F, *P, *cauchy, *mean, *largest, *point, *point_P, *place, *position, *volume;
   LamLoad *load;
-  PetscInt *elements, *first_point;
+  PetscInt *gripped, *elements, *first_point;
 } LamMacroFields;
 LAM_EXPORT PetscErrorCode LamMacroGetFields(LamMacro macro, LamMacroFields *fields);
 LAM_EXPORT PetscErrorCode LamMacroFieldsDestroy(LamMacroFields *fields);

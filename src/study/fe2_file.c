@@ -175,6 +175,7 @@ static PetscErrorCode WriteMesh(LamFE2File file, const LamMacroStep *step, const
   PetscFunctionBeginUser;
   PetscCall(LamWriteRows(file->writer, "/macro/nodes", 2, dims, fields->nodes, 2 * sizeof(PetscReal),
                          file->scales.macro_length * 1e3, "mm"));
+  PetscCall(LamRecordWriterInts(file->writer, "/macro/gripped", 1, dims, fields->gripped));
   PetscCall(WriteElements(file, fields));
   for (PetscInt s = 0; s < step->boundary_count; s++) LamNamesAppend(sizeof(names), names, "\n", step->boundary[s]);
   PetscCall(LamRecordWriterText(file->writer, "/macro/boundaries", names));

@@ -3,6 +3,7 @@
 
   Kind "fe2", physical units, each array with its unit as attribute "unit":
     /macro/nodes            [node][2]      reference positions, mm
+    /macro/gripped          [node]         LamMacroFields.gripped
     /macro/elements, topology              node numbers in VTK's order for quadratic elements: fe2_file.c
     /macro/boundaries                      names of the sides, one per line
     /macro/step/<k>/u       [node][3]      displacement, mm; the third component is 0

@@ -28,6 +28,18 @@ MACRO_TEST(PointsHaveTheirPlaces)
   }
 }
 
+/* A roller is no grip. */
+MACRO_TEST(NodesOfClampedSidesAreGripped)
+{
+  FixtureScene(fixture, 4, 2, 0.5, 1);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  FixtureBoundary(fixture, "top", NAN, 0.1);
+  FixtureSetUp(fixture, PETSC_COMM_WORLD);
+  const LamMacroFields *fields = FixtureFields(fixture);
+  for (PetscInt k = 0; k < fields->node_count; k++)
+    assert_int_equal(fields->gripped[k], fields->nodes[2 * k + 1] < 1e-12);
+}
+
 /* The lumen fraction of the synthetic material is J: over the body it adds up to the present area of the body. */
 MACRO_TEST(MeansAreByVolume)
 {

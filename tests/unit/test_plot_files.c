@@ -99,7 +99,8 @@ static void write_rve(void)
 static void write_fe2(void)
 {
   static const PetscReal nodes[9][2] = {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {5, 0}, {10, 5}, {5, 10}, {0, 5}, {5, 5}};
-  const PetscInt elements[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, points[2] = {9, 2}, one[2] = {1, 9}, four[2] = {1, 4};
+  const PetscInt elements[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8}, gripped[9] = {1, 1, 0, 0, 1}, points[2] = {9, 2},
+                 one[2] = {1, 9}, four[2] = {1, 4};
   const PetscInt steps[3] = {0, 1, 2}, count[1] = {3}, curve[3] = {3, SIDES, 2}, pair[2] = {2, 5};
   const PetscReal tensor[9] = {0.1, 0.2, 0, 0.2, 0.3, 0, 0, 0, 0.1}, indicator[4] = {0.7, 0, 0, 0.02},
                   load[3] = {0, 1, 0.5}, obstacles[2][5] = {{0, 10, 0, -1, 0}, {12, 5, -1, 0, 2}};
@@ -111,6 +112,7 @@ static void write_fe2(void)
   CHECK(LamRecordWriterOpen(FE2_FILE, "fe2", LAM_WRITE_CREATE, &Scene, &writer));
   CHECK(LamRecordWriterReals(writer, "/macro/nodes", 2, points, &nodes[0][0], "mm"));
   CHECK(LamRecordWriterInts(writer, "/macro/elements", 2, one, elements));
+  CHECK(LamRecordWriterInts(writer, "/macro/gripped", 1, points, gripped));
   for (int s = 0; s < SIDES; s++) {
     snprintf(side, sizeof side, "a_side_with_quite_a_long_name_%d\n", s);
     strcat(names, side);
@@ -303,7 +305,7 @@ TEST_IS(a_body_is_drawn_at_the_peak, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_PEAK, 
 TEST_IS(the_last_step_can_be_drawn, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_LAST, 0, 1, "Step 2:"));
 TEST_IS(a_strip_of_an_rve_has_all_states_with_an_answer, shows(LamPlotRVE, RVE_FILE, LAM_PLOT_PEAK, 1, 2, "State "));
 TEST_IS(a_strip_of_a_body_has_all_steps, shows(LamPlotFE2, FE2_FILE, LAM_PLOT_PEAK, 1, 3, "Step "));
-TEST_IS(the_legend_names_obstacles, shows(LamPlotFE2, FE2_FILE, 1, 0, 1, "rigid plate, indenter"));
+TEST_IS(the_legend_names_obstacles, shows(LamPlotFE2, FE2_FILE, 1, 0, 1, "plate, indenter, grip"));
 TEST_IS(the_legend_names_the_dashed_line, shows(LamPlotFE2, FE2_FILE, 1, 0, 1, "undeformed"));
 
 /* No text of the picture lies on another. */

@@ -72,8 +72,10 @@ typedef struct {
   LamOutline outline;
   LamReactions reactions;
   LamObstacles obstacles;
-  LamZooms zooms;    /* of the last step */
-  LamTimeLine times; /* of a process; else it has no states */
+  PetscInt *gripped;  /* owned */
+  PetscBool has_grip; /* one is drawn */
+  LamZooms zooms;     /* of the last step */
+  LamTimeLine times;  /* of a process; else it has no states */
 } FE2Picture;
 
 static PetscErrorCode FindField(const LamPlotRequest *request, const FE2FieldRow **field)
@@ -178,6 +180,7 @@ static PetscErrorCode LoadFE2(const LamPlotRequest *request, FE2Picture *p)
   PetscCall(LamPlotReadPoints(path, "/macro/nodes", -1, &p->node_count, &p->nodes));
   PetscCall(LamPlotReadElements(path, "/macro/elements", p->node_count, &p->element_count, &p->elements));
   PetscCall(LoadStep(path, p->row, p));
+  PetscCall(LamGripsRead(path, p->node_count, &p->gripped));
   PetscCall(LamPlotHas(path, "/process/time", &is_process));
   if (is_process) PetscCall(LamTimeLineRead(path, p->step_count, &p->times));
   if (p->row == p->step_count - 1) PetscCall(LamZoomsRead(path, &p->zooms));
@@ -196,6 +199,7 @@ static PetscErrorCode UnloadFE2(FE2Picture *p)
   PetscCall(PetscFree(p->elements));
   PetscCall(LamReactionsDestroy(&p->reactions));
   PetscCall(LamObstaclesDestroy(&p->obstacles));
+  PetscCall(PetscFree(p->gripped));
   PetscCall(LamZoomsDestroy(&p->zooms));
   PetscCall(LamTimeLineDestroy(&p->times));
   PetscFunctionReturn(0);
@@ -212,7 +216,7 @@ static void ExtendBox(const FE2Picture *p, PetscReal box[4])
   LamObstaclesExtend(&p->obstacles, PetscMax(size[2] - size[0], size[3] - size[1]), box);
 }
 
-static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2Picture *p, const LamColourRange *range)
+static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, FE2Picture *p, const LamColourRange *range)
 {
   const LamImage image = {{0, 0}, 0};
   const LamField field = {p->element_count, p->x, p->elements, p->values, PETSC_TRUE};
@@ -220,6 +224,7 @@ static PetscErrorCode DrawBody(LamCanvas canvas, const LamView *view, const FE2P
 
   PetscFunctionBeginUser;
   LamObstaclesDraw(canvas, view, &p->obstacles);
+  if (p->row) p->has_grip = LamGripsDraw(canvas, view, &p->outline, p->x, p->gripped); /* inflated without them */
   PetscCall(LamFieldPaint(canvas, view, &field, range, 1, &image));
   /* grid lines of a finer mesh would hide the field */
   if (per_element > 4) LamOutlineInnerPath(canvas, view, &p->outline, p->x);
@@ -239,13 +244,13 @@ static void DrawKey(LamCanvas canvas, const LamView *view, const FE2Picture *p)
   double x = f.x;
 
   x += LamScaleBar(canvas, view, x, y, LAM_SCALE_BAR, 1, "mm") + 10;
-  x += LamObstaclesKey(canvas, x, y, &p->obstacles);
+  x += LamObstaclesKey(canvas, x, y, &p->obstacles, p->has_grip);
   LamUndeformedKey(canvas, x, f.x + f.width, y, "undeformed");
 }
 
 /* Draws the body with its colour bar and legend inside `outer`; *view is its view. With zooms the bar is on the
    left, so that it does not cross the lines to them. */
-static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Picture *p, LamView *view)
+static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, FE2Picture *p, LamView *view)
 {
   double bar_width;
   PetscReal box[4] = LAM_EMPTY_BOX;
@@ -260,7 +265,8 @@ static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const FE2Pictur
   if (p->zooms.count) {
     bar.width = 0;
     bar.x -= 6;
-    outer.x += bar_width;
+    outer.x += bar_width + 6; /* room for a grip at the left */
+    outer.width -= 6;
   }
   ExtendBox(p, box);
   LamViewFit(outer, box, view);

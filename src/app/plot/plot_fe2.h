@@ -47,8 +47,13 @@ PetscErrorCode LamObstaclesDestroy(LamObstacles *obstacles);
 /* Extends the box of a body of this size so that they are seen. */
 void LamObstaclesExtend(const LamObstacles *obstacles, PetscReal size, PetscReal box[4]);
 void LamObstaclesDraw(LamCanvas canvas, const LamView *view, const LamObstacles *obstacles);
-/* Their legend from (x, y) to the right; returns its width. */
-double LamObstaclesKey(LamCanvas canvas, double x, double y, const LamObstacles *obstacles);
+/* Nodes of gripped sides [node_count], caller frees; NULL: an older file. */
+PetscErrorCode LamGripsRead(const char path[], PetscInt node_count, PetscInt **gripped);
+/* Draws bands along these sides at positions x, to be half covered by the body; whether there are any. */
+PetscBool LamGripsDraw(LamCanvas canvas, const LamView *view, const LamOutline *outline, const PetscReal x[],
+                       const PetscInt gripped[]);
+/* The legend of all that is rigid from (x, y) to the right; returns its width. */
+double LamObstaclesKey(LamCanvas canvas, double x, double y, const LamObstacles *obstacles, PetscBool grips);
 
 /* ---- plot_zoom.c ---- */
 #define LAM_PLOT_MAX_ZOOMS 3

@@ -1,11 +1,12 @@
 /*
-  Rigid plates and indenters beside a body.
+  What is rigid beside a body: plates, indenters, grips.
 */
 #include "plot_fe2.h"
+#include "names.h"
 #include <math.h>
 
 static const LamColour Rigid = {0.74, 0.74, 0.77};
-static const double Thickness = 5; /* points, of a plate */
+static const double Thickness = 5; /* points, of plates and grips */
 /* Share of the body's size that a plate takes beside it, and at most an indenter. */
 static const PetscReal PlateShare = 0.05, IndenterShare = 0.25;
 
@@ -97,14 +98,50 @@ void LamObstaclesDraw(LamCanvas canvas, const LamView *view, const LamObstacles 
   cairo_restore(cr);
 }
 
-double LamObstaclesKey(LamCanvas canvas, double x, double y, const LamObstacles *o)
+PetscErrorCode LamGripsRead(const char path[], PetscInt node_count, PetscInt **gripped)
+{
+  PetscBool found;
+  PetscInt rank, dims[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadInts(path, "/macro/gripped", &found, &rank, dims, gripped));
+  if (!found) *gripped = NULL; /* an older file */
+  PetscCheck(!found || (rank == 1 && dims[0] == node_count), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: /macro/gripped is damaged", path);
+  PetscFunctionReturn(0);
+}
+
+static PetscBool IsGripped(const LamEdge *edge, const PetscInt gripped[])
+{
+  return (PetscBool)(gripped && edge->boundary && gripped[edge->start] && gripped[edge->middle] && gripped[edge->end]);
+}
+
+PetscBool LamGripsDraw(LamCanvas canvas, const LamView *view, const LamOutline *outline, const PetscReal x[],
+                       const PetscInt gripped[])
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (int inner = 0; inner < 2; inner++) { /* the dark edge of the grey band */
+    for (PetscInt i = 0; i < outline->edge_count; i++) {
+      if (!IsGripped(&outline->edges[i], gripped)) continue;
+      LamOutlineEdgePath(canvas, view, &outline->edges[i], x, NULL, PETSC_FALSE);
+      has = PETSC_TRUE;
+    }
+    LamCanvasStroke(canvas, inner ? Rigid : LamDarkInk, inner ? 2 * Thickness - 1.2 : 2 * Thickness, NULL);
+  }
+  return has;
+}
+
+double LamObstaclesKey(LamCanvas canvas, double x, double y, const LamObstacles *o, PetscBool grips)
 {
   PetscInt indenters = 0;
-  const char *label;
+  char label[64] = "";
 
   for (PetscInt k = 0; k < o->count; k++) indenters += o->rows[5 * k + 4] > 0;
-  if (!o->count) return 0;
-  label = !indenters ? "rigid plate" : indenters == o->count ? "rigid indenter" : "rigid plate, indenter";
+  if (indenters < o->count) LamNamesAppend(sizeof label, label, ", ", "plate");
+  if (indenters) LamNamesAppend(sizeof label, label, ", ", "indenter");
+  if (grips) LamNamesAppend(sizeof label, label, ", ", "grip");
+  if (!*label) return 0;
   LamCanvasBox(canvas, (LamRect){x, y - 0.5 * Thickness, 2 * Thickness, Thickness});
   FillRigid(canvas);
   LamCanvasText(canvas, x + 2 * Thickness + 4, y, 0, 0, LAM_TICK_SIZE, label);
