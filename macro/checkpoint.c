@@ -41,22 +41,35 @@ static PetscErrorCode NumberPoints(LamMacro macro, PetscInt numbers[])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, const PetscInt numbers[])
+static PetscErrorCode ArchiveResponder(LamMacro macro, LamArchive archive, LamResponder responder, const char name[],
+                                       const PetscInt numbers[])
 {
   size_t size;
   char *states;
 
   PetscFunctionBeginUser;
-  PetscCall(LamResponderGetStateSize(macro->responder, &size));
+  PetscCall(LamResponderGetStateSize(responder, &size));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPI_UNSIGNED_LONG, MPI_MAX, macro->comm));
   if (!size) PetscFunctionReturn(0);
   PetscCall(PetscCalloc((size_t)macro->point_count * size, &states));
   for (PetscInt p = 0; p < macro->point_count && !LamArchiveIsReading(archive); p++)
-    PetscCall(LamResponderSave(macro->responder, p, states + (size_t)p * size));
-  PetscCall(LamArchiveItems(archive, "tissue states", size, macro->point_count, numbers, states));
+    PetscCall(LamResponderSave(responder, p, states + (size_t)p * size));
+  PetscCall(LamArchiveItems(archive, name, size, macro->point_count, numbers, states));
   for (PetscInt p = 0; p < macro->point_count && LamArchiveIsReading(archive); p++)
-    PetscCall(LamResponderLoad(macro->responder, p, states + (size_t)p * size));
+    PetscCall(LamResponderLoad(responder, p, states + (size_t)p * size));
   PetscCall(PetscFree(states));
+  PetscFunctionReturn(0);
+}
+
+/* States of the reference that certifies all points. */
+static PetscErrorCode ArchiveReference(LamMacro macro, LamArchive archive, const PetscInt numbers[])
+{
+  const PetscBool wanted = (PetscBool)(macro->certify == LAM_CERTIFY_ALL);
+  PetscBool has = wanted;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "has certified states", sizeof(has), &has));
+  if (has && wanted) PetscCall(ArchiveResponder(macro, archive, macro->reference, "certified states", numbers));
   PetscFunctionReturn(0);
 }
 
@@ -99,8 +112,80 @@ static PetscErrorCode ArchiveState(LamMacro macro, LamArchive archive)
   for (PetscInt b = 0; b < macro->border_count; b++) borders[b] = macro->borders[b].accepted;
   PetscCall(LamArchiveShared(archive, "borders", sizeof(borders), borders));
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now = borders[b];
-  PetscCall(ArchiveResponder(macro, archive, numbers));
+  PetscCall(ArchiveResponder(macro, archive, macro->responder, "tissue states", numbers));
+  PetscCall(ArchiveReference(macro, archive, numbers));
   PetscCall(PetscFree(numbers));
+  PetscFunctionReturn(0);
+}
+
+/* ---- what certificates need ---- */
+
+static PetscErrorCode ArchivePoints(LamMacro macro, LamArchive archive, const char name[], LamMaterialPoint points[])
+{
+  PetscInt *numbers;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(macro->point_count, &numbers));
+  PetscCall(NumberPoints(macro, numbers));
+  PetscCall(LamArchiveItems(archive, name, sizeof(*points), macro->point_count, numbers, points));
+  PetscCall(PetscFree(numbers));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ArchiveWaypoints(LamMacro macro, LamArchive archive)
+{
+  LamMacroWaypoints *waypoints = &macro->waypoints;
+  PetscInt *numbers;
+  char name[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "waypoints", sizeof(waypoints->count), &waypoints->count));
+  PetscCall(LamArchiveShared(archive, "waypoint stride", sizeof(waypoints->stride), &waypoints->stride));
+  PetscCall(LamArchiveShared(archive, "waypoint steps", sizeof(waypoints->step), waypoints->step));
+  PetscCall(PetscMalloc1(macro->point_count, &numbers));
+  PetscCall(NumberPoints(macro, numbers));
+  for (PetscInt k = 0; k < waypoints->count; k++) {
+    if (!waypoints->loads[k]) PetscCall(PetscMalloc1(macro->point_count, &waypoints->loads[k]));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "waypoint %" PetscInt_FMT, k));
+    PetscCall(LamArchiveItems(archive, name, sizeof(LamLoad), macro->point_count, numbers, waypoints->loads[k]));
+  }
+  PetscCall(PetscFree(numbers));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteInflated(LamMacro macro, LamArchive archive)
+{
+  PetscBool kept = (PetscBool)(macro->inflated.points != NULL);
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "inflated", sizeof(kept), &kept));
+  if (kept) PetscCall(ArchivePoints(macro, archive, "inflated points", macro->inflated.points));
+  PetscFunctionReturn(0);
+}
+
+/* With the displacement of the inflated body. */
+static PetscErrorCode ReadInflated(LamMacro macro, LamArchive archive)
+{
+  PetscBool kept;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "inflated", sizeof(kept), &kept));
+  if (!kept) PetscFunctionReturn(0);
+  PetscCall(ArchivePoints(macro, archive, "inflated points", macro->now));
+  PetscCall(LamMacroHoldRigidMotions(macro));
+  PetscCall(LamMacroKeepInflated(macro));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ArchivePeak(LamMacro macro, LamArchive archive)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveShared(archive, "peak", sizeof(macro->peak.known), &macro->peak.known));
+  if (!macro->peak.known) PetscFunctionReturn(0);
+  PetscCall(LamMacroPeakCreate(macro));
+  PetscCall(LamArchiveShared(archive, "peak step", sizeof(macro->peak.step), &macro->peak.step));
+  PetscCall(LamMacroArchiveVec(macro, archive, "peak displacement", macro->peak.u));
+  PetscCall(ArchivePoints(macro, archive, "peak points", macro->peak.points));
   PetscFunctionReturn(0);
 }
 
@@ -111,13 +196,16 @@ PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive)
   PetscCall(LamArchiveShared(archive, "progress", sizeof(macro->progress), &macro->progress));
   PetscCall(LamArchiveShared(archive, "work", sizeof(macro->step.work), &macro->step.work));
   PetscCall(LamMacroArchiveVec(macro, archive, "origin", macro->origin));
-  PetscCall(LamMacroArchiveVec(macro, archive, "moved", macro->moved));
-  PetscCall(LamArchiveShared(archive, "knows moved", sizeof(macro->knows_moved), &macro->knows_moved));
+  PetscCall(LamArchiveShared(archive, "cost", sizeof(macro->cost), &macro->cost));
   if (LamArchiveIsReading(archive)) { /* conditions are measured from the stored displacement */
     PetscCall(VecCopy(macro->origin, macro->u));
+    PetscCall(ReadInflated(macro, archive));
     PetscCall(LamMacroHoldBoundaries(macro));
-  }
+  } else
+    PetscCall(WriteInflated(macro, archive));
   PetscCall(ArchiveState(macro, archive));
+  PetscCall(ArchivePeak(macro, archive));
+  PetscCall(ArchiveWaypoints(macro, archive));
   if (LamArchiveIsReading(archive)) PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
   PetscFunctionReturn(0);
 }

@@ -25,13 +25,12 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-enum { VECTORS = 9 };
+enum { VECTORS = 8 };
 
 static void ListVectors(LamMacro macro, Vec *vectors[VECTORS])
 {
   Vec *const list[VECTORS] = {&macro->u,     &macro->trial,          &macro->residual, &macro->origin,
-                              &macro->force, &macro->force_accepted, &macro->external, &macro->before,
-                              &macro->moved};
+                              &macro->force, &macro->force_accepted, &macro->external, &macro->before};
 
   memcpy(vectors, list, sizeof(list));
 }
@@ -174,6 +173,9 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   ListVectors(m, vectors);
   for (int k = 0; k < VECTORS; k++) PetscCall(VecDestroy(vectors[k]));
   PetscCall(LamMacroBordersDestroy(m));
+  PetscCall(LamMacroInflatedDestroy(m));
+  PetscCall(LamMacroPeakDestroy(m));
+  PetscCall(LamMacroWaypointsDestroy(m));
   PetscCall(KSPDestroy(&m->solver));
   PetscCall(PetscFree2(m->constraints, m->rows));
   PetscCall(PetscFree(m->obstacle_nodes));

@@ -11,6 +11,7 @@
     rows.c      equations of nodes with prescribed displacement or in contact with an obstacle
     border.c    unknowns other than nodal displacements: grips and the traction factor
     reaction.c  reactions and work
+    certify.c, correction.c, sensitivity.c, sample.c, waypoints.c   reactions corrected by another responder
     assembly.c  gather F, query the responder, assemble force and tangent
     sealed.c    pressures of sealed lumens
     inflation.c initial guess of the inflated body
@@ -157,6 +158,42 @@ typedef struct {
   PetscReal combine[4], add[4], value[2];
 } LamNodeRows;
 
+/* The inflated body, from which displacements are measured, for certificates. */
+typedef struct {
+  LamMaterialPoint *points; /* [points]; NULL: not kept */
+  PetscBool uniform;        /* they are all alike */
+  PetscReal *dP;            /* [points][dim][dim] stress of the reference less that of the run; NULL: not known */
+  KSP solver;               /* of its transposed tangent with its rows */
+  PetscInt row_count;
+  LamNodeRows *rows;
+} LamMacroInflated;
+
+/* F of the points at some complete steps, for direct solves that follow the run; evenly spread over its steps, at least
+   half of them in use. Chosen: of a block in contact that is sheared in five steps, two suffice and none do not
+   (docs/results/performance.md). */
+enum { LAM_MACRO_WAYPOINTS = 4 };
+typedef struct {
+  PetscInt count, stride; /* every stride-th step */
+  PetscInt step[LAM_MACRO_WAYPOINTS];
+  LamLoad *loads[LAM_MACRO_WAYPOINTS]; /* [points]; owned */
+} LamMacroWaypoints;
+
+/* The complete step of the largest force so far, but for the last one. */
+typedef struct {
+  PetscBool known;
+  LamMacroStep step;
+  Vec u;
+  LamMaterialPoint *points;
+} LamMacroPeak;
+
+/* Derivatives of the reactions by the stress of the material points of this rank, times their volumes. */
+typedef struct {
+  PetscInt count; /* components that depend on it */
+  PetscInt side[2 * LAM_MAX_BOUNDARIES], component[2 * LAM_MAX_BOUNDARIES];
+  PetscReal *G;        /* [count][points][dim][dim], at most 2 boundary_count */
+  PetscReal *inflated; /* likewise of the inflated body; NULL: there is none */
+} LamSensitivity;
+
 /*
   An unknown q in addition to the displacements, with its own equation: the free component of a grip (the total force
   there is zero), or the factor of all tractions (a mean displacement is prescribed).
@@ -174,6 +211,11 @@ struct LamMacro_s {
   const LamScene *scene;  /* borrowed */
   LamResponder responder; /* borrowed */
   LamResponder reference; /* borrowed; NULL: reactions are not corrected */
+  LamCertify certify;     /* which reactions are */
+  PetscBool branches;     /* tissue may have several stable states at the same F */
+  PetscBool follows;      /* points that are solved are led along the path of the run */
+  char uncertified[96];   /* why they cannot be; empty: they can */
+  PetscInt64 seed;        /* of samples, beside the number of the step; 0 but in tests */
   LamMacroMonitor monitor;
   void *monitor_ctx;       /* borrowed */
   LamMacroCutback cutback; /* NULL: no callback */
@@ -220,8 +262,6 @@ struct LamMacro_s {
   /* unknowns */
   Vec u, trial, residual;    /* displacement: last converged, Newton iterate; residual of Newton */
   Vec origin;                /* displacement from which prescribed displacements are measured */
-  Vec moved;                 /* correction of the inflated body by the reference responder, ... */
-  PetscBool knows_moved;     /* ... once it is known */
   Vec force, force_accepted; /* internal nodal forces at the last evaluation and at the last converged state */
   Mat tangent;
   SNES snes;
@@ -247,9 +287,9 @@ struct LamMacro_s {
   LamObstacle obstacles[LAM_MAX_BOUNDARIES];
   PetscInt obstacle_node_count;
   LamObstacleNode *obstacle_nodes;
-  PetscBool lenient;   /* responses with small jumps: a small residual may remain */
-  PetscBool thorough;  /* at least one iteration, even if the first residual is small */
-  PetscBool fresh;     /* no residual evaluated yet in this series of iterations */
+  PetscBool lenient;         /* responses with small jumps: a small residual may remain */
+  PetscBool thorough;        /* at least one iteration, even if the first residual is small */
+  PetscBool fresh;           /* no residual evaluated yet in this series of iterations */
   PetscInt pulled, released; /* nodes: in contact though pulled, most of all; to leave at the next residual; -1 */
   PetscBool any_pulled;      /* on any rank */
   PetscReal violation; /* largest penetration or distance of nodes violating the contact conditions, last residual */
@@ -260,6 +300,12 @@ struct LamMacro_s {
   KSP solver; /* of the unbordered tangent; NULL if the scene needs no border */
 
   LamMacroProgress progress;
+  LamMacroInflated inflated;
+  LamMacroPeak peak;
+  LamMacroWaypoints waypoints;
+  struct {
+    PetscInt64 solves, queries;
+  } cost;                       /* of the steps so far, all ranks */
   LamMacroStep step;            /* report in progress */
   LamResponderCounters counted; /* counters at the start of the step */
 };
@@ -394,9 +440,42 @@ void LamMacroDisplacements(LamMacro macro, LamMacroStep *step);
 /* Forces on the body at the named sides, in the last converged state at the present parameter. */
 PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step);
 
+/* Index of the first constraint of the node behind that of constraint k. */
+PetscInt LamMacroNextHeld(LamMacro macro, PetscInt k);
+/* Add the force on one node to the reactions [sides][2]: of a node whose first constraint is k; of one at an obstacle.
+ */
+void LamMacroShareHeld(LamMacro macro, PetscInt k, const PetscReal force[2], PetscReal reaction[][2]);
+void LamMacroShareTouched(LamMacro macro, const LamObstacleNode *node, const LamTouch *touch, const PetscReal force[2],
+                          PetscReal reaction[][2]);
+
 /* certify.c */
-/* Corrects the reactions of the last converged state by the reference responder, if there is one. */
+/* Corrects reactions of the last converged state, and at the end of a run that of the peak, by the reference. */
 PetscErrorCode LamMacroCertify(LamMacro macro, LamMacroStep *step);
+PetscErrorCode LamMacroPeakCreate(LamMacro macro); /* allocates it, unless that is done */
+PetscErrorCode LamMacroPeakDestroy(LamMacro macro);
+void LamMacroUncertified(LamMacroCertificate *certificate, const char why[]);
+
+/* correction.c */
+/* Corrects the reactions of the present state with about `wanted` of its points. */
+PetscErrorCode LamMacroCorrect(LamMacro macro, PetscInt wanted, PetscInt64 seed, LamMacroCertificate *certificate);
+/* Finds dP of the inflated body, unless it is known or can only be sampled. */
+PetscErrorCode LamMacroSolveInflated(LamMacro macro, LamMacroCertificate *certificate);
+
+/* waypoints.c */
+PetscErrorCode LamMacroAddWaypoint(LamMacro macro, PetscInt step); /* the present state, a complete step */
+PetscErrorCode LamMacroWaypointsDestroy(LamMacro macro);
+PetscInt LamMacroCountWaypoints(LamMacro macro, PetscInt step); /* those before a step */
+/* Leads a point to a load at a step; inflated: its response in the inflated body, NULL: not wanted. */
+PetscErrorCode LamMacroLead(LamMacro macro, PetscInt p, PetscInt step, const LamLoad *load, LamResponse *inflated,
+                            LamResponse *response);
+
+/* sensitivity.c */
+/* Keeps the present state as the inflated body, held against rigid motions. */
+PetscErrorCode LamMacroKeepInflated(LamMacro macro);
+PetscErrorCode LamMacroInflatedDestroy(LamMacro macro);
+/* At the present state (now, u, load factor). *ok: the tangent is not singular. */
+PetscErrorCode LamMacroSensitivityCreate(LamMacro macro, LamSensitivity *s, PetscBool *ok);
+PetscErrorCode LamMacroSensitivityDestroy(LamSensitivity *s);
 
 /* assembly.c */
 /* dN/dX [nodes][dim] at Gauss point q of an element. */

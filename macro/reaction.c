@@ -32,55 +32,68 @@ static void Decompose(PetscInt count, const PetscReal directions[2][2], const Pe
 }
 
 /* Distributes a corner's force equally over the sides that prescribe it, so that the reactions of all sides balance. */
-static void Share(LamMacroStep *step, unsigned int sides, PetscReal part, const PetscReal direction[2])
+static void Share(unsigned int sides, PetscReal part, const PetscReal direction[2], PetscReal reaction[][2])
 {
-  for (PetscInt s = 0; s < step->boundary_count; s++) {
+  for (PetscInt s = 0; sides >> s; s++) {
     for (PetscInt i = 0; i < 2 && sides >> s & 1; i++)
-      step->reaction[s][i] += part * direction[i] / __builtin_popcount(sides);
+      reaction[s][i] += part * direction[i] / __builtin_popcount(sides);
   }
 }
 
-static void AddHeld(LamMacro macro, const PetscScalar r[], LamMacroStep *step)
+PetscInt LamMacroNextHeld(LamMacro macro, PetscInt k)
 {
-  PetscInt next;
+  const PetscInt next = k + 1;
 
-  for (PetscInt k = 0; k < macro->constraint_count; k = next) {
-    const LamConstraint *one = &macro->constraints[k];
-    const PetscReal force[2] = {PetscRealPart(r[one->local]), PetscRealPart(r[one->local + 1])};
-    PetscReal directions[2][2], part[2];
-    next = k + 1;
-    if (next < macro->constraint_count && one[1].local == one->local) next++;
-    for (PetscInt d = 0; d < next - k; d++) {
-      for (PetscInt i = 0; i < 2; i++) directions[d][i] = one[d].normal[i];
-    }
-    Decompose(next - k, (const PetscReal(*)[2])directions, force, part);
-    for (PetscInt d = 0; d < next - k; d++) Share(step, one[d].sides, part[d], directions[d]);
+  return next < macro->constraint_count && macro->constraints[next].local == macro->constraints[k].local ? next + 1
+                                                                                                         : next;
+}
+
+void LamMacroShareHeld(LamMacro macro, PetscInt k, const PetscReal force[2], PetscReal reaction[][2])
+{
+  const LamConstraint *one = &macro->constraints[k];
+  const PetscInt count = LamMacroNextHeld(macro, k) - k;
+  PetscReal directions[2][2], part[2];
+
+  for (PetscInt d = 0; d < count; d++) {
+    for (PetscInt i = 0; i < 2; i++) directions[d][i] = one[d].normal[i];
+  }
+  Decompose(count, (const PetscReal(*)[2])directions, force, part);
+  for (PetscInt d = 0; d < count; d++) Share(one[d].sides, part[d], directions[d], reaction);
+}
+
+void LamMacroShareTouched(LamMacro macro, const LamObstacleNode *node, const LamTouch *touch, const PetscReal force[2],
+                          PetscReal reaction[][2])
+{
+  const unsigned int side = 1u << macro->obstacles[touch->obstacle].side;
+  const LamConstraint *held = node->constraint < 0 ? NULL : &macro->constraints[node->constraint];
+  const PetscInt own = held ? 1 : 0;
+  PetscReal directions[2][2], part[2];
+
+  for (PetscInt i = 0; i < 2; i++) {
+    directions[own][i] = touch->normal[i];
+    if (held) directions[0][i] = held->normal[i];
+  }
+  if (held && PetscAbsReal(directions[0][0] * touch->normal[1] - directions[0][1] * touch->normal[0]) < 0.1) return;
+  Decompose(own + 1, (const PetscReal(*)[2])directions, force, part);
+  Share(side, part[own], touch->normal, reaction);
+  if (held) { /* LamMacroShareHeld assigned all of the force along the direction to these sides */
+    const PetscReal along = directions[0][0] * touch->normal[0] + directions[0][1] * touch->normal[1];
+    Share(held->sides, -part[own] * along, directions[0], reaction);
   }
 }
 
-/* Adds the forces of obstacles. For a node that slides along a prescribed direction, the obstacle's part is subtracted
-   from the sides that prescribe it. */
-static void AddTouched(LamMacro macro, const PetscScalar u[], const PetscScalar r[], LamMacroStep *step)
+/* Adds the forces r of all nodes. */
+static void AddNodes(LamMacro macro, const PetscScalar u[], const PetscScalar r[], PetscReal reaction[][2])
 {
+  for (PetscInt k = 0; k < macro->constraint_count; k = LamMacroNextHeld(macro, k)) {
+    const PetscInt at = macro->constraints[k].local;
+    LamMacroShareHeld(macro, k, (PetscReal[2]){PetscRealPart(r[at]), PetscRealPart(r[at + 1])}, reaction);
+  }
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
     const LamTouch touch = LamMacroNearest(macro, node, u);
     const PetscReal force[2] = {PetscRealPart(r[node->local]), PetscRealPart(r[node->local + 1])};
-    const unsigned int side = 1u << macro->obstacles[touch.obstacle].side;
-    const LamConstraint *held = node->constraint < 0 ? NULL : &macro->constraints[node->constraint];
-    PetscReal directions[2][2], part[2];
-    const PetscInt own = held ? 1 : 0;
-    for (PetscInt i = 0; i < 2; i++) {
-      directions[own][i] = touch.normal[i];
-      if (held) directions[0][i] = held->normal[i];
-    }
-    if (held && PetscAbsReal(directions[0][0] * touch.normal[1] - directions[0][1] * touch.normal[0]) < 0.1) continue;
-    Decompose(own + 1, (const PetscReal(*)[2])directions, force, part);
-    Share(step, side, part[own], touch.normal);
-    if (held) { /* AddHeld assigned all of the force along the direction to these sides */
-      const PetscReal along = directions[0][0] * touch.normal[0] + directions[0][1] * touch.normal[1];
-      Share(step, held->sides, -part[own] * along, directions[0]);
-    }
+    LamMacroShareTouched(macro, node, &touch, force, reaction);
   }
 }
 
@@ -113,8 +126,7 @@ PetscErrorCode LamMacroReactions(LamMacro macro, LamMacroStep *step)
   PetscCall(VecAYPX(macro->external, -LamMacroTractionFactor(macro), macro->force_accepted));
   PetscCall(VecGetArrayRead(macro->external, &r));
   PetscCall(VecGetArrayRead(macro->u, &u));
-  AddHeld(macro, r, step);
-  AddTouched(macro, u, r, step);
+  AddNodes(macro, u, r, step->reaction);
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   PetscCall(VecRestoreArrayRead(macro->external, &r));
   PetscCallMPI(

@@ -19,6 +19,24 @@ LAM_C_BEGIN
 
 typedef struct LamMacro_s *LamMacro;
 
+/* Reactions of a step corrected by LamMacroSetReference. */
+typedef struct {
+  PetscBool made;
+  PetscInt step;
+  PetscReal load_factor;
+  PetscInt points, of;                       /* points solved, of those whose responses are interpolated */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2]; /* corrected; NaN: unknown */
+  PetscReal margin[LAM_MAX_BOUNDARIES][2];   /* half the width of the interval that holds it with 99 % */
+  char why[200];                             /* there is none, with the reason; empty: there is one */
+} LamMacroCertificate;
+
+typedef enum {
+  LAM_CERTIFY_NONE,
+  LAM_CERTIFY_SHARE, /* at the end of the run the last state and the one of the largest force, from a sample of points
+                        that costs about a fifth of the run */
+  LAM_CERTIFY_ALL    /* each step, from all points */
+} LamCertify;
+
 typedef struct {
   PetscInt step;         /* 1.. ; inflation, if requested, is step 0; otherwise turgor acts first in step 1 */
   PetscReal time;        /* s; NaN: quasi-static load steps */
@@ -29,8 +47,8 @@ typedef struct {
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, stress * macro length, per thickness; a corner's
                                                     force is shared by the sides that prescribe it */
-  PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by LamMacroSetReference; NaN: unknown, ... */
-  char uncertified[200];                         /* ... and why; empty without a reference */
+  LamMacroCertificate certificate;               /* of these reactions */
+  LamMacroCertificate peak;                      /* of an earlier step, whose force was larger; in the last report */
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
   PetscInt obstacle_count;
   PetscReal obstacle[LAM_MAX_BOUNDARIES][5]; /* plates and indenters, macro lengths: a point of the plate, its normal
@@ -80,11 +98,17 @@ LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, con
 LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);
 LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder); /* borrows it */
 /*
-  Reactions of each step are corrected by a second responder: it is queried at the converged F of all points, and one
-  Newton step of the body follows (LamMacroStep.certified). NULL: none (default). Borrows it. PETSC_ERR_USER_INPUT for
-  load control, free grips and sealed cells. Call after LamMacroSetUp.
+  Reactions are corrected, to first order, by the stress P of a second responder at the converged F of material points
+  (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips and
+  sealed cells: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
+
+  LAM_CERTIFY_ALL: the reference is asked for all points of this rank at once, in the inflated body and in each step,
+  and accepts. LAM_CERTIFY_SHARE: for one point at a time, at different times on the ranks; `reject` makes it start from
+  its first state. branches: tissue may have several stable states at one F; then the point is led through earlier
+  states of the run, each accepted, and margins are wider.
 */
-LAM_EXPORT PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference);
+LAM_EXPORT PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference, LamCertify which,
+                                               PetscBool branches);
 LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*

@@ -59,7 +59,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   LamFE2Run run = LAM_FE2_RUN;
   LamConsole console = {.command = "fe2"};
   const char *response = NULL;
-  PetscBool done;
+  PetscBool done, all = PETSC_FALSE, none = PETSC_FALSE;
   const LamOption options[] = {
       {'d', "database", LAM_OPTION_TEXT, "DB.h5", "response database; a cache adds to it what it solves",
        &run.database_path},
@@ -70,8 +70,9 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        "database: query only",
        &response},
       {0, "certify", LAM_OPTION_FLAG, NULL,
-       "correct the reactions of each step by direct solves of its material points, and one solve of the body",
-       &run.certify},
+       "correct the reactions of each step by direct solves of all its material points", &all},
+      {0, "no-certify", LAM_OPTION_FLAG, NULL, "do not correct reactions at the end, from a sample of material points",
+       &none},
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on behind the last complete step of OUT.h5, where there is one",
        &run.resume},
       LAM_TEST_OPTIONS(console.test, " of the loaded side"),
@@ -82,15 +83,18 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
 
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args,
-                            "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify] [--readings] [--at "
-                            "STRAIN,...]\n           [--resume] [--json] [--quiet]",
+                            "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify | --no-certify]\n           "
+                            "[--readings] [--at STRAIN,...] [--resume] [--json] [--quiet]",
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);
   if (!LamFE2ChooseResponse("fe2", response, &run, exit_status) || !LamFE2CheckPaths("fe2", &run, exit_status) ||
       !LamTestReadOptions("fe2", &console.test, exit_status))
     PetscFunctionReturn(0);
-  if (run.certify && run.response == LAM_FE2_DIRECT &&
+  if (all && none && !LamUsageError("fe2", exit_status, "--certify and --no-certify exclude each other"))
+    PetscFunctionReturn(0);
+  if (!none && run.response != LAM_FE2_DIRECT) run.certify = all ? LAM_CERTIFY_ALL : LAM_CERTIFY_SHARE;
+  if (all && run.response == LAM_FE2_DIRECT &&
       !LamUsageError("fe2", exit_status,
                      "--certify corrects interpolated responses, and here all are solved; leave it "
                      "out, or give -d DB.h5"))

@@ -28,12 +28,26 @@ static json_t *SidesToJSON(const LamFE2Run *run, const LamMacroStep *step, const
   return sides;
 }
 
-json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
+/* What a certificate says, as members of an object. */
+static void SetCertificate(const LamFE2Run *run, const LamMacroStep *step, const LamMacroCertificate *certificate,
+                           json_t *object)
+{
+  if (!certificate->made) return;
+  if (certificate->why[0]) json_object_set_new(object, "uncertified", json_string(certificate->why));
+  if (certificate->why[0]) return;
+  json_object_set_new(object, "certified", SidesToJSON(run, step, certificate->reaction));
+  json_object_set_new(object, "certified_margin", SidesToJSON(run, step, certificate->margin));
+  json_object_set_new(object, "certified_points", json_integer(certificate->points));
+  json_object_set_new(object, "interpolated_points", json_integer(certificate->of));
+}
+
+static json_t *NumbersToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   const LamScales *scales = &run->scene->scales;
   const PetscReal mm = scales->macro_length * 1e3;
   json_t *reaction = SidesToJSON(run, step, step->reaction);
-  json_t *object = json_pack(
+
+  return json_pack(
       "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, "
       "s:I, s:o, s:o}",
       "step", (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
@@ -51,8 +65,21 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
       /* sources of the responses, and the time outside of solves */
       "interpolated", (json_int_t)step->interpolated, "query_seconds", LamJSONReal(step->query_seconds),
       "other_seconds", LamJSONReal(PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds)));
+}
 
-  if (run->certify) json_object_set_new(object, "certified", SidesToJSON(run, step, step->certified));
+json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
+{
+  json_t *object = json_object(), *numbers = NumbersToJSON(run, step, peak_memory);
+
+  SetCertificate(run, step, &step->certificate, object);
+  if (step->peak.made) {
+    json_t *peak = json_pack("{s:I, s:o}", "step", (json_int_t)step->peak.step, "load_factor",
+                             LamJSONReal(step->peak.load_factor));
+    SetCertificate(run, step, &step->peak, peak);
+    json_object_set_new(object, "peak", peak);
+  }
+  json_object_update(object, numbers); /* last: of keys that are there twice, scripts that read lines take these */
+  json_decref(numbers);
   return object;
 }
 
@@ -100,17 +127,26 @@ static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
   printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }
 
-/* Reactions corrected by direct solves, below the row. */
-static void PrintCertified(const LamFE2Run *run, const LamMacroStep *step)
+static void PrintForces(const LamFE2Run *run, const LamMacroStep *step, const char name[], const PetscReal force[][2])
 {
-  printf("%12s", "certified");
-  if (step->uncertified[0]) {
-    printf("  no: %s\n", step->uncertified);
+  printf("%12s", name);
+  for (PetscInt s = 0; s < step->boundary_count; s++)
+    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(LamWithoutNoise(force[s][i]) * ForceUnit(run)));
+}
+
+/* Reactions corrected by direct solves, and their margins, below the row. */
+static void PrintCertificate(const LamFE2Run *run, const LamMacroStep *step, const LamMacroCertificate *certificate)
+{
+  if (!certificate->made) return;
+  if (certificate->why[0]) {
+    printf("%12s  no: %s\n", "certified", certificate->why);
     return;
   }
-  for (PetscInt s = 0; s < step->boundary_count; s++)
-    for (int i = 0; i < 2; i++) printf(" %11.4e", (double)(LamWithoutNoise(step->certified[s][i]) * ForceUnit(run)));
-  putchar('\n');
+  PrintForces(run, step, "certified", certificate->reaction);
+  printf("  step %" PetscInt_FMT "\n", certificate->step);
+  PrintForces(run, step, "+-", certificate->margin);
+  printf("  with 99 %%, from %" PetscInt_FMT " of %" PetscInt_FMT " interpolated points\n", certificate->points,
+         certificate->of);
 }
 
 static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
@@ -121,7 +157,8 @@ static void PrintRow(const LamFE2Run *run, const LamMacroStep *step)
          (long long)step->hits, (long long)step->solves, (double)step->seconds, (double)step->solve_seconds);
   for (PetscInt k = 0; k < step->residual_count; k++) printf(" %.0e", (double)step->residuals[k]);
   putchar('\n');
-  if (run->certify) PrintCertified(run, step);
+  PrintCertificate(run, step, &step->certificate);
+  PrintCertificate(run, step, &step->peak);
   fflush(stdout);
 }
 

@@ -35,6 +35,23 @@ static PetscReal Largest(const LamMacroFields *fields, LamPointField field)
   return largest;
 }
 
+/* To the last row of its step. */
+static void AddCertificate(LamCurve *curve, const LamMacroCertificate *certificate, const LamScales *scales)
+{
+  const PetscReal unit = scales->stress * scales->macro_length * 1e-3;
+  PetscInt k = curve->count - 1;
+
+  if (!certificate->made) return;
+  while (k >= 0 && curve->rows[k].value[LAM_CURVE_STEP] != (PetscReal)certificate->step) k--;
+  for (PetscInt s = 0; s < curve->side_count && k >= 0; s++) {
+    for (int i = 0; i < 2; i++) {
+      curve->rows[k].certified[s][i] = certificate->reaction[s][i] * unit;
+      curve->rows[k].margin[s][i] = certificate->margin[s][i] * unit;
+      if (isfinite(certificate->reaction[s][i])) curve->has_certified = PETSC_TRUE;
+    }
+  }
+}
+
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales)
 {
@@ -48,12 +65,13 @@ PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamM
     for (int i = 0; i < 2; i++) {
       row.displacement[s][i] = step->displacement[s][i] * scales->macro_length * 1e3;
       row.reaction[s][i] = step->reaction[s][i] * scales->stress * scales->macro_length * 1e-3;
-      row.certified[s][i] = step->certified[s][i] * scales->stress * scales->macro_length * 1e-3;
-      if (isfinite(row.certified[s][i])) curve->has_certified = PETSC_TRUE;
+      row.certified[s][i] = row.margin[s][i] = NAN;
     }
   }
   PetscCall(LamListGrow(curve->count, sizeof(row), &curve->capacity, &curve->rows));
   curve->rows[curve->count++] = row;
+  AddCertificate(curve, &step->certificate, scales);
+  AddCertificate(curve, &step->peak, scales);
   PetscFunctionReturn(0);
 }
 
@@ -85,8 +103,10 @@ PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)
   PetscCall(
       LamWriteRows(writer, "/macro/curve/displacement", 3, dims, first->displacement[0], sizeof(*first), 1, "mm"));
   PetscCall(LamWriteRows(writer, "/macro/curve/reaction", 3, dims, first->reaction[0], sizeof(*first), 1, "N/mm"));
-  if (curve->has_certified)
-    PetscCall(LamWriteRows(writer, "/macro/curve/certified", 3, dims, first->certified[0], sizeof(*first), 1, "N/mm"));
+  if (!curve->has_certified) PetscFunctionReturn(0);
+  PetscCall(LamWriteRows(writer, "/macro/curve/certified", 3, dims, first->certified[0], sizeof(*first), 1, "N/mm"));
+  PetscCall(
+      LamWriteRows(writer, "/macro/curve/certified_margin", 3, dims, first->margin[0], sizeof(*first), 1, "N/mm"));
   PetscFunctionReturn(0);
 }
 
@@ -99,7 +119,8 @@ static void PrintHeader(FILE *out, const LamCurve *curve)
         fprintf(out, ",%s u1 (mm),%s u2 (mm),%s R1 (N/mm),%s R2 (N/mm)", curve->side[s], curve->side[s], curve->side[s],
                 curve->side[s]);
       for (PetscInt s = 0; s < curve->side_count && curve->has_certified; s++)
-        fprintf(out, ",%s R1 certified (N/mm),%s R2 certified (N/mm)", curve->side[s], curve->side[s]);
+        for (int i = 1; i <= 2; i++)
+          fprintf(out, ",%s R%d certified (N/mm),%s R%d margin (N/mm)", curve->side[s], i, curve->side[s], i);
     }
     if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     fprintf(out, "%s%s", c ? "," : "", Names[c]);
@@ -117,7 +138,10 @@ static void PrintRow(FILE *out, const LamCurve *curve, const LamCurveRow *row)
       for (int i = 0; i < 2; i++) LamBesideNumber(out, row->reaction[s][i]);
     }
     for (PetscInt s = 0; s < curve->side_count && c == LAM_CURVE_WORK && curve->has_certified; s++)
-      for (int i = 0; i < 2; i++) LamBesideNumber(out, row->certified[s][i]);
+      for (int i = 0; i < 2; i++) {
+        LamBesideNumber(out, row->certified[s][i]);
+        LamBesideNumber(out, row->margin[s][i]);
+      }
     if (LamCurveHas(curve, (LamCurveColumn)c)) LamBesideNumber(out, row->value[c]);
   }
   fputc('\n', out);

@@ -44,6 +44,7 @@ typedef struct {
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* mm */
   PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, N per mm of thickness */
   PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by direct solves */
+  PetscReal margin[LAM_MAX_BOUNDARIES][2];       /* half the width of its interval of 99 % */
 } LamCurveRow;
 
 typedef struct {
@@ -60,7 +61,7 @@ PetscErrorCode LamCurveDestroy(LamCurve *curve);
 /* Whether the curve has this column. */
 PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
 /* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement, reaction and, where
-   they are, certified [step][side][2]. */
+   they are, certified and certified_margin [step][side][2]. */
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer);
 /* Writes the .csv file beside the HDF5 file: a header line of names with units, then a line per step; NaN is empty. */
 PetscErrorCode LamCurveWriteCSV(const LamCurve *curve, const char hdf5[]);

@@ -88,7 +88,7 @@ static PetscErrorCode Follow(LamFE2Run *run, LamFE2Follow follow, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(LamFE2Connect(run));
   if (run->stopped) PetscFunctionReturn(0);
-  if (run->certify) PetscCall(LamFE2Certify(run));
+  if (run->certify != LAM_CERTIFY_NONE) PetscCall(LamFE2Certify(run));
   PetscCall(LamFE2OpenFiles(run));
   PetscCall(follow(ctx, &stopped, sizeof(status), status));
   if (!stopped) ierr = LamFE2Zoom(run);

@@ -36,7 +36,7 @@ typedef struct LamFE2Run_s {
   const char *database_path; /* NULL: none */
   const char *out_path;      /* results; NULL: none */
   PetscBool resume;          /* resume after the last complete step of out_path, if there is one */
-  PetscBool certify;         /* correct the reactions of interpolated responses by direct solves */
+  LamCertify certify;        /* which reactions of interpolated responses are corrected by direct solves */
   LamFE2Response response;
   LamReporter reporter;
   /* Called after each step, on rank 0: the files have the step, `totals` do not yet include it. May be NULL. */
@@ -106,7 +106,7 @@ PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder);
 
 /* ---- fe2_certify.c ---- */
-/* Corrects the reactions by direct solves; after LamFE2Connect. PETSC_ERR_SUP: not of such a body. */
+/* Corrects the reactions that run->certify selects by direct solves; after LamFE2Connect. */
 PetscErrorCode LamFE2Certify(LamFE2Run *run);
 
 /* ---- fe2_record.c; on rank 0, except LamFE2OpenFiles, which is collective ---- */
