@@ -18,6 +18,7 @@ typedef struct {
   PetscReal *x;        /* [step] displacement of the loaded side, mm; owned; NULL: no loaded side, or an older file */
   PetscReal *pull;     /* [step] the reaction along its displacement, N/mm; owned; NULL as x */
   PetscReal *reaction; /* [step][side][2], N/mm; owned */
+  PetscReal *certified, *margin; /* likewise, corrected, and half the width of the interval; owned; NULL: none is */
   PetscInt side_count;
   char *sides;     /* names, one per line; owned */
   json_t *summary; /* owned; NULL: an older file */
@@ -32,8 +33,8 @@ PetscBool LamReactionsGet(const LamReactions *reactions, PetscInt column, PetscR
                           char label[LAM_SERIES_LABEL]);
 /* The step with the largest force of the loaded side, or else the largest load factor. */
 PetscInt LamReactionsPeak(const LamReactions *reactions);
-/* Draws the reactions of all sides against the displacement of the loaded one, or else the load factor, and the
-   onsets. */
+/* Draws the reactions of all sides against the displacement of the loaded one, or else the load factor, the onsets,
+   and certified reactions as error bars. */
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *reactions);
 
 /* ---- plot_obstacle.c ---- */

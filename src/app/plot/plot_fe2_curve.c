@@ -27,6 +27,21 @@ static PetscErrorCode ReadCurve(const char path[], const char name[], PetscInt s
   PetscFunctionReturn(0);
 }
 
+/* Certified reactions and their margins, if there are any. */
+static PetscErrorCode ReadCertified(const char path[], LamReactions *p)
+{
+  PetscInt rank, dims[4];
+  PetscBool has;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadReals(path, "/macro/curve/certified_margin", &has, &rank, dims, &p->margin));
+  if (!has) PetscFunctionReturn(0);
+  PetscCall(PetscFree(p->margin)); /* read again with a check of its size */
+  PetscCall(ReadCurve(path, "/macro/curve/certified", p->count, 2 * p->side_count, &p->certified));
+  PetscCall(ReadCurve(path, "/macro/curve/certified_margin", p->count, 2 * p->side_count, &p->margin));
+  PetscFunctionReturn(0);
+}
+
 /* Gets the name of a side. */
 static void SideName(const LamReactions *p, PetscInt side, size_t size, char name[])
 {
@@ -81,6 +96,7 @@ PetscErrorCode LamReactionsRead(const char path[], PetscInt count, LamReactions 
   for (const char *c = p->sides; *c; c++) p->side_count += *c != '\n' && (c[1] == '\n' || !c[1]);
   PetscCall(ReadCurve(path, "/macro/curve/load_factor", count, 1, &p->load));
   PetscCall(ReadCurve(path, "/macro/curve/reaction", count, 2 * p->side_count, &p->reaction));
+  PetscCall(ReadCertified(path, p));
   PetscCall(LamFileReadText(path, "/macro/summary", &found, &summary));
   if (found) p->summary = json_loads(summary, 0, NULL);
   PetscCall(PetscFree(summary));
@@ -95,6 +111,8 @@ PetscErrorCode LamReactionsDestroy(LamReactions *p)
   PetscCall(PetscFree(p->x));
   PetscCall(PetscFree(p->pull));
   PetscCall(PetscFree(p->reaction));
+  PetscCall(PetscFree(p->certified));
+  PetscCall(PetscFree(p->margin));
   PetscCall(PetscFree(p->sides));
   json_decref(p->summary);
   PetscFunctionReturn(0);
@@ -149,6 +167,43 @@ static PetscErrorCode ReactionSeries(const LamReactions *p, PetscInt *count, Lam
   PetscFunctionReturn(0);
 }
 
+/* The intervals of certified reactions of a component, with caps. */
+static void DrawIntervals(LamCanvas canvas, const LamAxes *axes, const LamReactions *p, PetscInt column)
+{
+  const double cap = 3;
+  cairo_t *cr = LamCanvasCairo(canvas);
+
+  for (PetscInt k = 0; k < p->count; k++) {
+    const PetscReal value = p->certified[k * 2 * p->side_count + column],
+                    margin = p->margin[k * 2 * p->side_count + column];
+    const double x = LamAxesX(axes, p->x ? p->x[k] : p->load[k]);
+
+    if (!isfinite(value) || !isfinite(margin)) continue;
+    cairo_move_to(cr, x, LamAxesY(axes, value - margin));
+    cairo_line_to(cr, x, LamAxesY(axes, value + margin));
+    for (int end = -1; end <= 1; end += 2) {
+      cairo_move_to(cr, x - cap, LamAxesY(axes, value + end * margin));
+      cairo_line_to(cr, x + cap, LamAxesY(axes, value + end * margin));
+    }
+  }
+  LamCanvasStroke(canvas, LamDarkInk, 0.9, NULL);
+}
+
+/* Of all components that are drawn. */
+static PetscErrorCode DrawCertified(LamCanvas canvas, const LamAxes *axes, const LamReactions *p)
+{
+  char label[LAM_SERIES_LABEL];
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  if (!p->certified) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(p->count, &values));
+  for (PetscInt c = 0; c < 2 * p->side_count; c++)
+    if (LamReactionsGet(p, c, values, label)) DrawIntervals(canvas, axes, p, c);
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
 /* A line at the onset of separation or rupture, with its name. */
 static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamReactions *p, const char name[])
 {
@@ -174,6 +229,7 @@ PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReacti
   PetscCall(PetscMalloc1(2 * p->side_count + 1, &series));
   PetscCall(ReactionSeries(p, &count, series));
   LamChart(canvas, outer, &axes, count, series);
+  PetscCall(DrawCertified(canvas, &axes, p));
   DrawOnset(canvas, &axes, p, "separation");
   DrawOnset(canvas, &axes, p, "rupture");
   for (PetscInt i = 0; i < count; i++) PetscCall(LamSeriesDestroy(&series[i]));
