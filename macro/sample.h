@@ -7,7 +7,7 @@
 #include <petscsys.h>
 
 /*
-  Draws at least `wanted` of N items, with the expected number of draws of item i in proportion to size[i] >= 0
+  Draws about `wanted` of N items, with the expected number of draws of item i in proportion to size[i] >= 0
   (one from each of equal parts of the cumulated sizes, in the order of the items). The largest, which would be drawn
   for certain, are drawn once, but at most half of `wanted` are; draws[i] = -1. Of the others draws[i] >= 0 counts the
   draws, and share[i] is size over their total. *drawn: number of those draws; 0: no item is left to chance.
