@@ -331,7 +331,7 @@ PetscErrorCode LamSummaryArchive(LamSummary *summary, LamArchive archive)
   PetscFunctionBeginUser;
   PetscCall(LamArchiveShared(archive, "sides", sizeof(curve->side_count), &curve->side_count));
   PetscCall(LamArchiveShared(archive, "side names", sizeof(curve->side), curve->side));
-  PetscCall(LamArchiveShared(archive, "inflated", sizeof(summary->F0), summary->F0));
+  PetscCall(LamArchiveShared(archive, "inflated tissue", sizeof(summary->F0), summary->F0));
   PetscCall(LamArchiveShared(archive, "onsets", sizeof(summary->onset), summary->onset));
   PetscCall(LamArchiveList(archive, "curves", sizeof(LamCurveRow), &curve->count, (void **)&curve->rows));
   PetscCall(LamArchiveList(archive, "measures", sizeof(PetscReal), &summary->before_count, (void **)&summary->before));
