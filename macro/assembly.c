@@ -247,6 +247,7 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
 
 PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
 {
+  const PetscReal stress = LamStressScaleOf(&macro->scene->micro).plane;
   PetscReal sum = 0;
 
   PetscFunctionBeginUser;
@@ -256,7 +257,7 @@ PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
     PetscReal fe[LAM_MACRO_DOFS] = {0};
     for (PetscInt q = 0; q < element->kind->points; q++) {
       const PetscReal *dN = LamMacroGradient(macro, element, q), w = macro->weight[element->first + q];
-      for (PetscInt k = 0; k < dofs; k++) fe[k] += w * LAM_STRESS_FLOOR * dN[k];
+      for (PetscInt k = 0; k < dofs; k++) fe[k] += w * stress * dN[k];
     }
     for (PetscInt k = 0; k < dofs; k++) sum += fe[k] * fe[k];
   }

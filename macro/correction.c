@@ -58,23 +58,25 @@ static PetscReal Told(const LamMaterialPoint *point)
   return isfinite(point->field[LAM_POINT_ERROR]) ? point->field[LAM_POINT_ERROR] : 0;
 }
 
-/* The error of stress to expect at each point, [points]. */
+/* The error of stress to expect at each point, [points]: told errors and stresses are raised by their means, so that no
+   point is never drawn. */
 static PetscErrorCode ExpectErrors(LamMacro macro, const LamMaterialPoint points[], PetscReal expected[])
 {
-  PetscReal sum[2] = {0, 0};
+  PetscReal sum[3] = {0, 0, 0};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < macro->point_count; p++) {
     if (points[p].field[LAM_POINT_INTERPOLATED] == 0) continue;
     sum[0] += Told(&points[p]);
-    sum[1] += 1;
+    sum[1] += Norm(9, points[p].P);
+    sum[2] += 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, macro->comm));
-  const PetscReal mean = sum[0] > 0 ? sum[0] / sum[1] : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, macro->comm));
+  const PetscReal mean = sum[0] > 0 ? sum[0] / sum[2] : 1, stress = sum[1] / PetscMax(1, sum[2]);
   for (PetscInt p = 0; p < macro->point_count; p++)
     expected[p] = points[p].field[LAM_POINT_INTERPOLATED] == 0
                       ? 0
-                      : (Told(&points[p]) + mean) * (Norm(9, points[p].P) + LAM_STRESS_FLOOR);
+                      : (Told(&points[p]) + mean) * (Norm(9, points[p].P) + stress);
   PetscFunctionReturn(0);
 }
 

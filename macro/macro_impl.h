@@ -491,7 +491,7 @@ static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroEl
 PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok);
 /* Internal nodal forces of the evaluated state; *scale: norm of the element forces before summation at the nodes. */
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale);
-/* The same norm for a body whose stress is LAM_STRESS_FLOOR times the identity everywhere. */
+/* The same norm for a body whose stress is that of a strain of 1 % times the identity everywhere. */
 PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale);
 PetscErrorCode LamMacroAssembleTangent(LamMacro macro, Mat tangent);
 

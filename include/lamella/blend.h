@@ -34,7 +34,8 @@ LAM_EXPORT PetscInt LamBlendAt(PetscInt n, const PetscReal knots[], PetscReal va
   load with which *response was initialised (LamResponseInit). error_estimate: the weighted estimates of the terms
   plus the change of P with the coarse weights. Status: converged, or unstable if a term is unstable.
 */
-LAM_EXPORT void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *response);
+LAM_EXPORT void LamBlend(LamStressScale scale, PetscInt n, const LamBlendTerm terms[], const LamResponse at[],
+                         LamResponse *response);
 
 LAM_C_END
 

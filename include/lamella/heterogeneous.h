@@ -27,6 +27,7 @@ typedef struct {
 typedef struct {
   const char *name;       /* precedes the reason if there is no response; "": nothing */
   PetscReal stress;       /* C1 + C2, in units of the body's */
+  LamStressScale scale;   /* of errors, in units of the body */
   LamResponder responder; /* its points 0, 1, ... are the body's points that contain this tissue, in their order */
 } LamHeterogeneousTissue;
 

@@ -138,10 +138,14 @@ static inline PetscReal LamResponseConcavity(const LamResponse *response)
   return PetscMin(response->energy_turgor2, LAM_LEAST_CONCAVITY);
 }
 
-/* Error of stress P against P_ref: |P - P_ref| / (|P_ref| + floor), Frobenius norms, nondimensional. The floor is
-   2.5e-3 MPa of the reference wall (C1 + C2 = 0.11 MPa): below it stress counts as zero. */
-#define LAM_STRESS_FLOOR 0.0227
-LAM_EXPORT PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9]);
+/* Error of stress P against P_ref in the plane: |P - P_ref| / max(|P_ref|, scale.plane), Frobenius norms. */
+LAM_EXPORT PetscReal LamStressError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9]);
+/* The same of P33, with scale.axial. */
+LAM_EXPORT PetscReal LamAxialError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9]);
+/* The larger one of both. */
+LAM_EXPORT PetscReal LamWholeError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9]);
+/* LamStressError for an error of this norm. */
+LAM_EXPORT PetscReal LamStressErrorOfSize(LamStressScale scale, PetscReal size, const PetscReal P_ref[9]);
 
 /*
   A named number or array of a response. HDF5 records, JSON and the docs are generated from this list.

@@ -100,17 +100,21 @@ LAM_EXPORT PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVESta
 LAM_EXPORT PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control,
                                            LamRVEState state, LamResponse *response);
 
-/* Fraction of the walls' volume: if kinked_fraction of a response with LAM_WANT_WALLS exceeds it, the error estimate
-   of bonded tissue is increased, and is a guess. */
+/* Fraction of the walls' volume: if kinked_fraction of a response with LAM_WANT_WALLS exceeds it, walls wrinkle on the
+   scale of the mesh, and the error estimate of bonded tissue is increased and a guess. */
 #define LAM_KINKED_SHARE 0.005
 
+/* Solves the load of `from`, a state of `rve` with a solution, on another mesh of the same tissue, from the interpolated
+   solution. LAM_NOT_CONVERGED if Newton's method does not converge from there: the branch of `from` is another one or
+   has ended on that mesh. `state` belongs to `finer`. Not for sealed cells. */
+LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE finer, LamRVEState state,
+                                           LamResponse *response);
+
 /*
-  Estimates the error of a state's P, as LamStressError, from the same load on half as many elements. It costs a sixth
-  of the time of a bonded state, a tenth to four tenths of a contact state. The coarse solution is kept as the start
-  of the next estimate: use one object for consecutive states. LamRVEEstimateError sets response->error_estimate of
-  the response that belongs to `state`, and adds its time. The estimate is NaN for an odd number of elements along a
-  face, sealed cells, no equilibrium on the coarser mesh, or elements far too long for the thinnest wall or too deep
-  for the lumen (docs/results/extremes.md, "Worth of the error estimate"). Borrows `rve`.
+  Estimates the error of a state's P, as LamWholeError, from the same load on a mesh with half as many
+  elements again along the faces and through the walls. It costs three to four times a bonded state, twice a contact
+  state. LamRVEEstimateError sets response->error_estimate of the response that belongs to `state`, and adds its time.
+  The estimate is NaN for sealed cells and where the finer mesh has no state near. Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

@@ -84,6 +84,19 @@ LAM_EXPORT PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *m
 /* Parses a description. `path` names the file that contains it, for messages. The caller destroys *micro. */
 LAM_EXPORT PetscErrorCode LamMicrostructureParse(const char path[], const char json[], LamMicrostructure *micro);
 
+/* Stresses that errors are compared with where stresses are smaller (LamStressError), in C1 + C2. */
+typedef struct {
+  PetscReal plane, axial; /* of the in-plane components; of P33 */
+} LamStressScale;
+/*
+  The stress of the tissue at a strain of 1 %, in C1 + C2 of its reference wall, from its stiffness at rest: in the plane
+  the Frobenius norm of the tangent of thin bonded walls,
+    |A| = t (4 + 2 C4/(C1 + C2)) / (1 - t)^1.2,    A_3333 = 8 t,
+  C4 of quadratic fibres; the mean over the cells. Within 35 % of the solved tangent for t up to 0.4 and C4 up to 100
+  (C1 + C2), and for thin walls of any fibres (docs/results/performance.md, The norm of errors).
+*/
+LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
+
 /* Wall thickness of a cell, in apothems. */
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
 {

@@ -2,8 +2,8 @@
   Wall laws and their parameters. The wall struct, scene files and their reference, descriptions and hashes, `check`,
   `map`, kinetics and parametric databases are generated from these lists.
 
-  A new law needs one row in LAM_WALL_LAWS, rows for its own parameters, one kernel file in rve/wall, and a row in
-  wall_law.c.
+  A new law needs one row in LAM_WALL_LAWS, rows for its own parameters, one kernel file in rve/wall, a row in wall_law.c,
+  and its stiffness at rest in LamWallFibreModulus.
 */
 #ifndef LAMELLA_WALL_H
 #define LAMELLA_WALL_H
@@ -73,6 +73,9 @@ LAM_EXPORT PetscBool LamWallParameterIsOptional(PetscInt parameter); /* may be l
 LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter);   /* for pictures: "$C$_{4}" */
 /* Writes "fibre modulus" to `text`, and returns it. */
 LAM_EXPORT const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
+
+/* C4 of quadratic fibres with the same stiffness at zero strain; 0 without fibres. */
+LAM_EXPORT PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Multiplies all moduli by `by / over`, of which one is 1, so that only one rounding occurs. */
 LAM_EXPORT void LamWallScale(LamWall *wall, PetscReal by, PetscReal over);

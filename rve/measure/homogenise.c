@@ -326,7 +326,7 @@ static PetscReal ContactError(LamRVE rve, const PetscReal H[NQ][NQ], const LamRe
   if (LamIsExact(rve)) return 0.0;
   for (PetscInt i = 0; i < 9; ++i) changed[i] = response->P[i];
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) changed[LamFComponent[q]] -= rve->smooth->width * H[q][Q_WIDTH];
-  return LamStressError(changed, response->P);
+  return LamStressError(LamStressScaleOf(&rve->micro), changed, response->P);
 }
 
 static void FillDerivatives(LamRVE rve, const PetscReal H[NQ][NQ], LamResponse *response)

@@ -151,8 +151,29 @@ static PetscErrorCode ProlongStresses(LamRVE coarse, LamRVE rve)
   PetscFunctionReturn(0);
 }
 
-/* Solves on the fine mesh from the interpolated coarse solution; `to` is set if that converges. */
-static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve, LamRVEState to)
+/* Contact from interpolated positions: by the exact law if the coarse state is exact, by the smooth one otherwise, or
+   if that fails. */
+static PetscErrorCode ProlongContactState(LamRVE coarse, const LamRVEState from, LamRVE rve, LamNewtonOutcome *outcome)
+{
+  const LamLoad *load = &from->load;
+  LamContactOutcome out;
+
+  PetscFunctionBeginUser;
+  *outcome = LAM_NEWTON_STALLED;
+  if (from->width == 0.0) {
+    PetscCall(LamUseExactLaw(rve));
+    ProlongContact(coarse, from, rve);
+    PetscCall(LamSharpen(rve, load, NULL, LAM_NEAR_REACH, outcome));
+    if (*outcome == LAM_NEWTON_CONVERGED) PetscFunctionReturn(0);
+    ProlongPositions(coarse, from, rve);
+    PetscCall(ProlongStresses(coarse, rve));
+  }
+  PetscCall(LamContactSearch(rve, load, NULL, LAM_SEARCH_WIDTH, LamNewtonTolerance(rve), &out));
+  if (out.found) *outcome = LAM_NEWTON_CONVERGED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProlong(LamRVE coarse, const LamRVEState from, LamRVE rve, LamRVEState to)
 {
   const LamLoad *load = &from->load;
   LamNewtonOutcome outcome;
@@ -163,16 +184,7 @@ static PetscErrorCode Prolong(LamRVE coarse, const LamRVEState from, LamRVE rve,
   rve->moved = PETSC_TRUE;
   rve->budget = LAM_ITERATION_BUDGET;
   if (rve->contact) {
-    LamContactOutcome out;
-
-    if (from->width == 0.0) {
-      PetscCall(LamUseExactLaw(rve));
-      ProlongContact(coarse, from, rve);
-      PetscCall(LamSharpen(rve, load, NULL, LAM_NEAR_REACH, &outcome));
-    } else {
-      PetscCall(LamContactSearch(rve, load, NULL, LAM_SEARCH_WIDTH, LamNewtonTolerance(rve), &out));
-      outcome = out.found ? LAM_NEWTON_CONVERGED : LAM_NEWTON_STALLED;
-    }
+    PetscCall(ProlongContactState(coarse, from, rve, &outcome));
   } else {
     PetscCall(LamNewtonFast(rve, load, NULL, &outcome));
     if (outcome == LAM_NEWTON_STALLED) {
@@ -201,7 +213,8 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
 
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
 {
-  return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > 1 && !rve->seal.allowed && !state->solved);
+  return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > 1 && !rve->seal.allowed &&
+                     !state->solved);
 }
 
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response)
@@ -220,7 +233,7 @@ PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start
   PetscCall(LamRVESolve(coarse, load, state, coarse_response));
   if (!nested) PetscCall(NameMesh(coarse, coarse_response));
   for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamFactorDestroy(&coarse->systems[k].factor)); /* for memory */
-  if (coarse_response->status == LAM_CONVERGED) PetscCall(Prolong(coarse, state, rve, start));
+  if (coarse_response->status == LAM_CONVERGED) PetscCall(LamProlong(coarse, state, rve, start));
   if (LamWasStopped(coarse_response)) rve->work.stopped = PETSC_TRUE;
   PetscCall(LamRVEStateDestroy(&state));
   PetscCall(LamRVEDestroy(&coarse));

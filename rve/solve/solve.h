@@ -10,7 +10,7 @@
     contact_jump.c                        whether the branch of the state before has ended
     nested.c                              initial guess from the solution on a coarser mesh
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
-    estimate.c                            error estimate of P from a mesh with half as many elements
+    estimate.c                            error estimate of P from a finer mesh
     rve.c state.c responder.c             the public interface
 */
 #ifndef LAM_RVE_SOLVE_H
@@ -103,6 +103,9 @@ PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, Lam
 /* ---- nested.c ---- */
 /* Whether a solve from `state` should start from the solution on a coarser mesh. */
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
+/* Solves on a finer mesh, whose response was begun, from the interpolated solution that `coarse` holds, which is that of
+   `from`; `to` is set if that converges. */
+PetscErrorCode LamProlong(LamRVE coarse, LamRVEState from, LamRVE rve, LamRVEState to);
 /* Solves on a coarser mesh and returns its response. If it and Newton from its interpolated solution converge, `start`
    becomes the solution on this mesh. */
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);

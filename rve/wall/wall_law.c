@@ -6,18 +6,6 @@ static const LamWallLaw laws[] = {
     {LAM_WALL_MOONEY_RIVLIN, LamMatrixMooneyRivlin, NULL},
 };
 
-PetscReal LamWallFibreModulus(const LamWall *wall)
-{
-  LamWall both = *wall;
-  const LamPoints at_rest = {0};
-  LamKernel1 fibre = {0};
-
-  both.fibres = LAM_FIBRES_BOTH;
-  for (size_t i = 0; i < sizeof(laws) / sizeof(laws[0]); ++i)
-    if (laws[i].type == wall->law && laws[i].fibre) laws[i].fibre(&both, at_rest, &fibre);
-  return 2.0 * fibre.dd[0] * PetscSqr(1.0 - 3.0 * wall->dispersion); /* at rest tr C = 3 to first order */
-}
-
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law)
 {
   PetscFunctionBeginUser;

@@ -45,8 +45,6 @@ typedef struct {
 } LamWallLaw;
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
-/* C4 of quadratic fibres with the same stiffness at zero strain; 0 without fibres. */
-PetscReal LamWallFibreModulus(const LamWall *wall);
 
 /* Kernels, one file each. */
 void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,

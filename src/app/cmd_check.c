@@ -1,5 +1,5 @@
 /*
-  lamella check: the model that a scene describes, and its predicted cost. Needs no MPI.
+  lamella check: the model that a scene describes, and its predicted cost.
 */
 #include "app.h"
 #include "rounding.h"
@@ -191,6 +191,13 @@ static void PrintWall(const LamWall *wall, PetscReal MPa)
   printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
 }
 
+static void PrintChoice(const LamScene *scene, const LamMeshTrial *trial)
+{
+  printf(" (chosen for an accuracy of %.2g %%", (double)(100 * scene->accuracy));
+  if (trial->loads) printf("; error %.2g %% at %d trial loads", (double)(100 * trial->error), (int)trial->loads);
+  printf(")\n");
+}
+
 static void PrintModel(const Check *check)
 {
   const LamScene *scene = check->scene;
@@ -226,7 +233,7 @@ static void PrintModel(const Check *check)
          micro->through);
   if (micro->grading > 0) printf(", graded by %.2g towards the corners", (double)micro->grading);
   if (!given->along || !given->through)
-    printf(" (chosen for an accuracy of %.2g %%)\n", (double)(100 * scene->accuracy));
+    PrintChoice(scene, &check->plan.trial);
   else
     printf(" (as the scene says)\n");
 }
@@ -330,8 +337,11 @@ PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
                             "Reads and checks a scene; prints what will be modelled and its predicted cost.", options,
                             1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
+  PetscCall(args->start(args));
   PetscCall(Plan(path, &check));
-  if (json) {
+  if (!LamAppIsRoot()) {
+    /* ranks plan alike */
+  } else if (json) {
     PetscCall(PrintObject(&check));
   } else {
     PrintModel(&check);

@@ -13,7 +13,7 @@ static const struct {
   LamCommandFunction run;
   PetscBool solves; /* runs under mpirun; the others need no MPI */
 } Commands[] = {
-    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_FALSE},
+    {"check", "read and check a scene; print the plan and its predicted cost", LamCommandCheck, PETSC_TRUE},
     {"rve", "solve the RVE along the scene's load", LamCommandRVE, PETSC_TRUE},
     {"build", "fill a response database", LamCommandBuild, PETSC_TRUE},
     {"query", "one response, or many, from a database", LamCommandQuery, PETSC_FALSE},

@@ -107,6 +107,21 @@ PetscErrorCode LamMicrostructureHashTissue(const LamMicrostructure *micro, char 
   PetscFunctionReturn(0);
 }
 
+LamStressScale LamStressScaleOf(const LamMicrostructure *micro)
+{
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  PetscReal plane = 0, axial = 0;
+
+  for (PetscInt k = 0; k < cells; k++) {
+    const LamWall *wall = micro->cell ? &micro->cell[k].wall : &micro->wall;
+    const PetscReal t = LamWallThickness(micro, k), shear = wall->C1 + wall->C2;
+
+    plane += t * (4 * shear + 2 * LamWallFibreModulus(wall)) / pow(1 - t, 1.2);
+    axial += 8 * t * shear;
+  }
+  return (LamStressScale){0.01 * plane / (PetscReal)cells, 0.01 * axial / (PetscReal)cells};
+}
+
 PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy)
 {
   const PetscInt count = micro->cells[0] * micro->cells[1];

@@ -135,15 +135,32 @@ void LamResponseScale(PetscReal stress, LamResponse *response)
   }
 }
 
-PetscReal LamStressError(const PetscReal P[9], const PetscReal P_ref[9])
+static PetscReal SizeInPlane(const PetscReal P[9])
 {
-  PetscReal difference = 0, reference = 0;
+  return sqrt(P[0] * P[0] + P[1] * P[1] + P[3] * P[3] + P[4] * P[4]);
+}
 
-  for (PetscInt i = 0; i < 9; i++) {
-    difference += (P[i] - P_ref[i]) * (P[i] - P_ref[i]);
-    reference += P_ref[i] * P_ref[i];
-  }
-  return sqrt(difference) / (sqrt(reference) + LAM_STRESS_FLOOR);
+PetscReal LamStressErrorOfSize(LamStressScale scale, PetscReal size, const PetscReal P_ref[9])
+{
+  return size / PetscMax(SizeInPlane(P_ref), scale.plane);
+}
+
+PetscReal LamStressError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9])
+{
+  PetscReal difference[9];
+
+  for (PetscInt i = 0; i < 9; i++) difference[i] = P[i] - P_ref[i];
+  return LamStressErrorOfSize(scale, SizeInPlane(difference), P_ref);
+}
+
+PetscReal LamAxialError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9])
+{
+  return fabs(P[8] - P_ref[8]) / PetscMax(fabs(P_ref[8]), scale.axial);
+}
+
+PetscReal LamWholeError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9])
+{
+  return PetscMax(LamStressError(scale, P, P_ref), LamAxialError(scale, P, P_ref));
 }
 
 size_t LamResponseMemberIndex(size_t offset)

@@ -51,6 +51,18 @@ PetscBool LamWallLawHasFibres(LamWallLawType law)
   return law_fibres[law];
 }
 
+PetscReal LamWallFibreModulus(const LamWall *wall)
+{
+  switch (wall->law) {
+  case LAM_WALL_FIBRE_MOONEY_RIVLIN:
+    return wall->C4;
+  case LAM_WALL_FIBRE_EXPONENTIAL: /* at rest tr C = 3 to first order */
+    return 2.0 * wall->k1 * PetscSqr(1.0 - 3.0 * wall->dispersion);
+  default:
+    return 0.0;
+  }
+}
+
 LamWallLawType LamWallOwner(PetscInt parameter)
 {
   PetscInt law = 0;

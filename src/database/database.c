@@ -263,8 +263,7 @@ PetscErrorCode LamDatabaseGetTable(LamDatabase database, LamTable *table)
   PetscFunctionBeginUser;
   if (database->grid && (!database->table || database->table_count != database->nodes.count)) {
     PetscCall(LamTableDestroy(&database->table));
-    PetscCall(
-        LamTableMake(&database->nodes, database->grid, (PetscBool)!database->header.micro.cell, &database->table));
+    PetscCall(LamTableMake(&database->nodes, database->grid, &database->header.micro, &database->table));
     database->table_count = database->nodes.count;
   }
   *table = LamTableReference(database->table);

@@ -210,16 +210,6 @@ static PetscReal Spread(const LamScatterSearch *search, const Sums *s, const Lam
   return sqrt(PetscMax(sum, 0));
 }
 
-/* LamStressError for an error of this size. */
-static PetscReal RelativeError(PetscReal size, const PetscReal P[9])
-{
-  PetscReal other[9];
-
-  memcpy(other, P, sizeof(other));
-  other[0] += size;
-  return LamStressError(other, P);
-}
-
 /* Error of a single model at this distance. */
 static PetscReal OneModelError(LamDatabase database, PetscReal distance2)
 {
@@ -325,7 +315,8 @@ static void RespondFromBlend(const LamScatterSearch *search, PetscReal reach, La
       AddState(search, k, reach, &sums);
   Finish(search, &sums, &blend);
   Fill(search, &search->blends, PETSC_FALSE, &blend, sums.A3333 / sums.W, r);
-  spread = RelativeError(Spread(search, &sums, &blend, r->load.F), r->P);
+  spread =
+      LamStressErrorOfSize(LamStressScaleOf(&search->db->header.micro), Spread(search, &sums, &blend, r->load.F), r->P);
   if (search->db->header.micro.interface == LAM_INTERFACE_CONTACT) spread *= CONTACT_DOUBT;
   r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
 }

@@ -128,7 +128,7 @@ static void AddEffort(const LamResponse *term, LamResponse *r)
   r->unknowns = PetscMax(r->unknowns, term->unknowns);
 }
 
-void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *r)
+void LamBlend(LamStressScale scale, PetscInt n, const LamBlendTerm terms[], const LamResponse at[], LamResponse *r)
 {
   PetscReal estimate = 0, P[9] = {0};
 
@@ -143,5 +143,5 @@ void LamBlend(PetscInt n, const LamBlendTerm terms[], const LamResponse at[], La
     for (int k = 0; k < 9; k++) P[k] += terms[i].coarse * at[i].P[k];
   }
   MixShares(n, terms, at, r);
-  r->error_estimate = estimate + LamStressError(P, r->P);
+  r->error_estimate = estimate + LamStressError(scale, P, r->P);
 }

@@ -70,7 +70,7 @@ static PetscErrorCode Combine(const Heterogeneous *heterogeneous, const LamHeter
   if (point->count == 1)
     *response = at[0];
   else
-    LamBlend(point->count, point->term, at, response);
+    LamBlend(heterogeneous->tissues[point->term[0].knot].scale, point->count, point->term, at, response);
   PetscFunctionReturn(0);
 }
 

@@ -140,6 +140,7 @@ PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal val
 {
   LamResponse at[LAM_BLEND_TERMS];
   LamBlendTerm terms[LAM_BLEND_TERMS];
+  LamMicrostructure micro;
   PetscInt n;
 
   PetscFunctionBeginUser;
@@ -160,7 +161,8 @@ PetscErrorCode LamParametricDatabaseQuery(LamParametricDatabase f, PetscReal val
              (double)f->values[terms[i].knot], at[i].reason);
     PetscFunctionReturn(0);
   }
-  LamBlend(n, terms, at, response);
+  PetscCall(LamDatabaseGetMicrostructure(f->databases[terms[0].knot], &micro, NULL, NULL));
+  LamBlend(LamStressScaleOf(&micro), n, terms, at, response);
   if (response->error_estimate > accuracy) {
     response->status = LAM_OUT_OF_REACH;
     snprintf(

@@ -14,7 +14,6 @@
 #include <string.h>
 
 enum { MOST_ASKED = 1000 };
-static const PetscReal FLOOR = 0.0227; /* as in LamStressError */
 
 /* ---- the box ---- */
 
@@ -150,7 +149,7 @@ PetscErrorCode LamAuditDestroy(LamAudit *audit)
 
 /* ---- comparison with solves ---- */
 
-static PetscReal TangentError(const PetscReal A[81], const PetscReal A_ref[81])
+static PetscReal TangentError(LamStressScale scale, const PetscReal A[81], const PetscReal A_ref[81])
 {
   PetscReal difference = 0, reference = 0;
 
@@ -163,13 +162,15 @@ static PetscReal TangentError(const PetscReal A[81], const PetscReal A_ref[81])
           difference += (A[at] - A_ref[at]) * (A[at] - A_ref[at]);
           reference += A_ref[at] * A_ref[at];
         }
-  return sqrt(difference) / (sqrt(reference) + FLOOR);
+  return sqrt(difference) / (sqrt(reference) + scale.plane);
 }
 
 /* Repeats the query: its response (two kilobytes) is not stored. */
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh)
 {
   LamAudited *result = &audit->results[i];
+  LamMicrostructure micro;
+  LamStressScale scale;
   LamResponse answer;
 
   PetscFunctionBeginUser;
@@ -178,11 +179,13 @@ PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *f
     Count(audit->unsolved, LamStatusNames[fresh->status]);
     PetscFunctionReturn(0);
   }
+  PetscCall(LamDatabaseGetMicrostructure(audit->from->database, &micro, NULL, NULL));
+  scale = LamStressScaleOf(&micro);
   PetscCall(LamDatabaseQuery(audit->from->database, &audit->loads[i], audit->accuracy, &answer));
   *result = (LamAudited){.compared = PETSC_TRUE,
                          .estimate = answer.error_estimate,
-                         .error = LamStressError(answer.P, fresh->P),
-                         .tangent = TangentError(answer.tangent, fresh->tangent),
+                         .error = LamStressError(scale, answer.P, fresh->P),
+                         .tangent = TangentError(scale, answer.tangent, fresh->tangent),
                          .opening = fabs(answer.opening_fraction - fresh->opening_fraction),
                          .lumen = fabs(answer.lumen_fraction - fresh->lumen_fraction),
                          .query_seconds = answer.seconds,

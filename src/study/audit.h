@@ -18,7 +18,7 @@ typedef struct {
 typedef struct {
   PetscBool compared;
   PetscReal estimate, error; /* of P: error estimate of the response; LamStressError between response and solve */
-  PetscReal tangent;         /* |A - A_ref| / (|A_ref| + 0.0227 (C1 + C2)), in-plane entries, Frobenius */
+  PetscReal tangent;         /* |A - A_ref| / (|A_ref| + stress of 1 % strain), in-plane entries, Frobenius */
   PetscReal opening, lumen;  /* absolute differences of opening_fraction and lumen_fraction */
   PetscReal query_seconds, solve_seconds;
 } LamAudited;

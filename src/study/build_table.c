@@ -9,7 +9,7 @@
   them). An exception: an unsolved node delays the nodes after it for half a minute at most.
 */
 #include "build_run.h"
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "rounding.h"
 #include "clock.h"
 #include <string.h>
@@ -151,11 +151,14 @@ static PetscErrorCode CreateTeams(LamBuild *b)
 
 PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
 {
+  LamMeshTrial trial;
+
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(scene_path, &b->scene));
   PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `sample`, which says what states to build from", scene_path);
-  PetscCall(LamChooseMesh(b->scene));
+  PetscCall(LamChooseMesh(b->scene, &trial));
+  LamWarnOfMesh(PETSC_COMM_WORLD, &b->reporter, b->scene, &trial);
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &b->scene->micro, b->scene->accuracy));
   PetscFunctionReturn(0);
 }

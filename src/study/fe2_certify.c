@@ -114,7 +114,7 @@ static PetscErrorCode Join(LamFE2Run *run, LamResponder *responder)
   for (PetscInt t = 0; t < tissues->count; t++) {
     const LamFE2Tissue *tissue = &tissues->tissues[t];
 
-    parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, tissue->reference};
+    parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, LamFE2StressScale(tissue), tissue->reference};
   }
   PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->reference));
   *responder = run->reference;

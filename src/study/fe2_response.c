@@ -2,7 +2,7 @@
   Responders of the material points of an FE2 run: RVE solves, a database, or both.
 */
 #include "fe2_run.h"
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "microstructure_compare.h"
 #include "rounding.h"
 #include <stdio.h>
@@ -79,9 +79,12 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
 {
+  LamMeshTrial trial;
+
   PetscFunctionBeginUser;
   if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
-  PetscCall(LamChooseMesh(&tissue->scene));
+  PetscCall(LamChooseMesh(&tissue->scene, &trial));
+  LamWarnOfMesh(run->comm, &run->reporter, &tissue->scene, &trial);
   PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &tissue->scene.micro, tissue->scene.accuracy));
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
@@ -99,7 +102,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
   /* for the scene's own tissue, as written to the files */
   if (tissues->tissues[0].name[0])
-    PetscCall(LamChooseMesh(run->scene));
+    PetscCall(LamChooseMesh(run->scene, NULL));
   else
     run->scene->micro = tissues->tissues[0].scene.micro;
   if (tissues->turgor) PetscCall(LamMacroSetPointTissue(run->macro, tissues->turgor, tissues->cohesion));
@@ -253,7 +256,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
     LamFE2Tissue *tissue = &tissues->tissues[t];
 
     PetscCall(LamFE2ConnectTissue(run, tissue, &responder));
-    parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, responder};
+    parts[t] = (LamHeterogeneousTissue){tissue->name, tissue->stress, LamFE2StressScale(tissue), responder};
   }
   if (!run->stopped && !tissues->plain) {
     PetscCall(LamHeterogeneousCreate(tissues->count, parts, tissues->points, tissues->point, &run->heterogeneous));

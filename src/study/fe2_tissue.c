@@ -469,3 +469,10 @@ PetscErrorCode LamFE2TissuesDestroy(LamFE2Tissues *tissues)
   tissues->count = 0;
   PetscFunctionReturn(0);
 }
+
+LamStressScale LamFE2StressScale(const LamFE2Tissue *tissue)
+{
+  const LamStressScale own = LamStressScaleOf(&tissue->scene.micro);
+
+  return (LamStressScale){own.plane * tissue->stress, own.axial * tissue->stress};
+}

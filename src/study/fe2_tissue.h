@@ -54,5 +54,7 @@ PetscErrorCode LamFE2TissuesCreate(MPI_Comm comm, const LamReporter *reporter, L
 PetscErrorCode LamFE2TissuesCreateOne(MPI_Comm comm, const LamScene *scene, const char database_path[], PetscInt points,
                                       LamFE2Tissues *tissues);
 PetscErrorCode LamFE2TissuesDestroy(LamFE2Tissues *tissues);
+/* Of errors of stress, in units of the body. */
+LamStressScale LamFE2StressScale(const LamFE2Tissue *tissue);
 
 #endif

@@ -196,7 +196,7 @@ static PetscErrorCode Solve(LamFE2Run *run, const Zoom *zoom, LamRVE rve, const 
   }
   PetscCall(PetscArraycpy(own.F, load.F, 9));
   BodyStress(response.P, zoom->angle, stress, own.found);
-  own.difference = LamStressError(zoom->P, own.found);
+  own.difference = LamStressError(LamFE2StressScale(&run->tissues.tissues[zoom->tissue]), zoom->P, own.found);
   own.apothem = run->tissues.tissues[zoom->tissue].scene.scales.length * 1e6;
   found[(*count)++] = own;
   PetscCall(WriteCells(run, zoom, *count, rve, state));

@@ -29,6 +29,8 @@ typedef struct {
 /* ---- map_path.c ---- */
 
 PetscInt LamMapPointCount(const LamScene *scene);
+/* Whether paths differ in their walls. */
+PetscBool LamMapVariesWalls(const LamScene *scene);
 PetscInt LamMapPathCount(const LamScene *scene);
 PetscInt LamMapCutCount(const LamScene *scene); /* points of one path */
 /* Number of the point at cut `cut` of path `path`. */

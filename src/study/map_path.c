@@ -10,7 +10,7 @@
   computed.
 */
 #include "map.h"
-#include "error_model.h"
+#include "mesh_choice.h"
 #include <math.h>
 #include <string.h>
 
@@ -104,6 +104,14 @@ static void SetQuantity(LamScene *scene, LamMapQuantity quantity, PetscReal valu
   }
 }
 
+PetscBool LamMapVariesWalls(const LamScene *scene)
+{
+  for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
+    if (scene->map[a].quantity == LAM_MAP_WALL_THICKNESS || LamMapQuantityParameter(scene->map[a].quantity) >= 0)
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Copy with the quantities of the path and its own loads; everything else is borrowed. */
 static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *copy)
 {
@@ -116,7 +124,7 @@ static PetscErrorCode CopyScene(const LamScene *scene, PetscInt path, LamScene *
   PointOf(scene, path, 0, at);
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
     SetQuantity(copy, scene->map[a].quantity, LamMapAxisValue(&scene->map[a], at[a]));
-  PetscCall(LamChooseMesh(copy)); /* other walls may need another mesh */
+  PetscCall(LamChooseMesh(copy, NULL)); /* other walls may need another mesh */
   PetscFunctionReturn(0);
 }
 

@@ -12,7 +12,7 @@
 #include "turgor_stretch.h"
 #include "dispatch.h"
 #include "map.h"
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "clock.h"
 #include <string.h>
 #include <unistd.h>
@@ -137,7 +137,7 @@ static PetscErrorCode OpenWriter(LamMap *m)
   LamScene described = *m->scene;
 
   PetscFunctionBeginUser;
-  PetscCall(LamChooseMesh(&described));
+  PetscCall(LamChooseMesh(&described, NULL));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &described.micro, m->scene->accuracy));
   LamWarnOfTurgor(&m->reporter, m->scene);
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
@@ -177,12 +177,26 @@ static PetscErrorCode RunAll(LamMap *m)
   PetscFunctionReturn(0);
 }
 
+/* One mesh for all paths, unless their walls differ. */
+static PetscErrorCode ChooseMesh(LamMap *m)
+{
+  LamScene described = *m->scene;
+  LamMeshTrial trial;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamChooseMesh(&described, &trial));
+  LamWarnOfMesh(PETSC_COMM_WORLD, &m->reporter, m->scene, &trial);
+  if (!LamMapVariesWalls(m->scene)) m->scene->micro = described.micro;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Prepare(LamMap *m)
 {
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(m->scene_path, &m->scene));
   PetscCheck(m->scene->has_map, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `map`, which says what quantities to vary", m->scene_path);
+  PetscCall(ChooseMesh(m));
   m->paths = LamMapPathCount(m->scene);
   m->cuts = LamMapCutCount(m->scene);
   PetscCall(PetscCalloc1(m->paths, &m->todo));

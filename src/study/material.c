@@ -3,7 +3,7 @@
 */
 #include <lamella/material.h>
 #include "query_source.h"
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "rounding.h"
 #include <math.h>
 
@@ -31,7 +31,7 @@ static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
              "%s: rve.patch: a patch between grips is a body of its own and no material point; take a period "
              "(rve.cells)",
              path);
-  PetscCall(LamChooseMesh(m->scene));
+  PetscCall(LamChooseMesh(m->scene, NULL));
   PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, m->scene, &m->rve));
   PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
   m->scales = m->scene->scales;

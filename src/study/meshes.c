@@ -26,7 +26,10 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
 PetscErrorCode LamMeshesCreate(MPI_Comm comm, const LamScene *scene, PetscInt count, LamMeshes *meshes)
 {
   PetscFunctionBeginUser;
-  *meshes = (LamMeshes){.count = count, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .unsealed.status = LAM_CONVERGED};
+  *meshes = (LamMeshes){.count = count,
+                        .F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                        .scale = LamStressScaleOf(&scene->micro),
+                        .unsealed.status = LAM_CONVERGED};
   for (PetscInt m = 0; m < count; m++) PetscCall(CreateOne(comm, scene, m + 1, &meshes->rve[m], &meshes->state[m]));
   PetscFunctionReturn(0);
 }
@@ -126,7 +129,7 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
     responses[1] = *first;
   }
   if (meshes->count < 2 || !LamResponseHasFields(first) || !LamResponseHasFields(second)) PetscFunctionReturn(0);
-  first->error_estimate = LamStressError(first->P, second->P);
+  first->error_estimate = LamStressError(meshes->scale, first->P, second->P);
   first->debonded_spread = fabs(first->debonded_fraction - second->debonded_fraction);
   first->open_spread = fabs(first->open_fraction - second->open_fraction);
   PetscFunctionReturn(0);

@@ -13,6 +13,7 @@ typedef struct {
   LamRVE rve[2];
   LamRVEState state[2]; /* the last converged states */
   PetscReal F[9];       /* of the first mesh */
+  LamStressScale scale; /* of errors of P */
   PetscBool stopped;    /* a solve was interrupted: its responses are LAM_OUT_OF_REACH and carry no information */
   LamResponse unsealed; /* reason if the cells could not be sealed: then nothing is solved. Else converged */
 } LamMeshes;

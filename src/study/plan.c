@@ -1,7 +1,7 @@
 /*
   What a scene requires: mesh, unknowns, number of solves.
 */
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "map.h"
 #include "plan.h"
 #include <lamella/database.h>
@@ -122,8 +122,9 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   LamScene meshed = *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(LamChooseMesh(&meshed));
-  *plan = (LamPlan){.micro = meshed.micro, .load_states = scene->load_count};
+  *plan = (LamPlan){.load_states = scene->load_count};
+  PetscCall(LamChooseMesh(&meshed, &plan->trial));
+  plan->micro = meshed.micro;
   plan->unknowns = CountUnknowns(&plan->micro);
   if (scene->sealed) plan->unknowns += scene->micro.cells[0] * scene->micro.cells[1]; /* the pressures */
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));

@@ -4,7 +4,7 @@
 #ifndef LAM_PLAN_H
 #define LAM_PLAN_H
 
-#include <lamella/scene.h>
+#include "mesh_choice.h"
 
 /* Range of cells that differ: smallest and largest. */
 typedef struct {
@@ -16,6 +16,7 @@ typedef struct {
 
 typedef struct {
   LamMicrostructure micro; /* with along and through chosen; borrows the scene's cells */
+  LamMeshTrial trial;      /* that chose the mesh */
   LamCellSpread spread;
   PetscInt unknowns;       /* of one RVE */
   PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
@@ -25,7 +26,7 @@ typedef struct {
   PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
 } LamPlan;
 #define LAM_PARALLEL_UNKNOWNS 20000 /* of one RVE: from this size on several ranks factor its matrix together */
-/* With the mesh of LamChooseMesh (error_model.h). */
+/* With the mesh of LamChooseMesh (mesh_choice.h). */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
 /* What it costs on one rank of this machine. */

@@ -49,6 +49,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
              "%s: has no block `load`, which says what states to solve", run->scene->path);
   PetscCall(LamPlanMake(run->scene, &plan));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &run->reporter, &plan.micro, run->scene->accuracy));
+  LamWarnOfMesh(PETSC_COMM_WORLD, &run->reporter, run->scene, &plan.trial);
   LamWarnOfTurgor(&run->reporter, run->scene);
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
@@ -76,6 +77,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
 static void CountDoubts(LamRVERun *run, const LamResponse *response)
 {
   if (response->error_estimate > run->scene->accuracy) run->inaccurate++;
+  if (run->estimate && LamResponseHasFields(response) && isnan(response->error_estimate)) run->unknown++;
   if (!(response->kinked_fraction > LAM_KINKED_SHARE)) return;
   run->kinked++;
   run->most_kinked = PetscMax(run->most_kinked, response->kinked_fraction);
@@ -89,6 +91,11 @@ static void ReportDoubts(const LamRVERun *run)
                   "rve.mesh (it is %d x %d)",
                   (int)run->inaccurate, (int)run->solved, (double)(100 * run->scene->accuracy),
                   (int)run->scene->micro.along, (int)run->scene->micro.through);
+  if (run->unknown)
+    LamReportNote(&run->reporter, "the error of %d of %d states is not known: %s", (int)run->unknown, (int)run->solved,
+                  run->scene->sealed
+                      ? "it is not estimated for sealed cells"
+                      : "a finer mesh has no state near theirs; it has another branch there, and these depend on the mesh");
   if (run->kinked)
     LamReportNote(
         &run->reporter,

@@ -41,7 +41,8 @@ typedef struct LamRVERun_s {
   LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
   PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
-  PetscInt kinked;     /* number of states in which too much of the walls has kinked for an estimate */
+  PetscInt unknown;    /* number of states without an error estimate */
+  PetscInt kinked;     /* number of states in which walls wrinkle on the scale of the mesh */
   PetscReal most_kinked;
   PetscReal start; /* set by the caller */
 } LamRVERun;

@@ -150,7 +150,7 @@ PetscErrorCode LamReferenceMake(const LamScene *scene, LamStates *states, PetscR
 /* ---- tradeoff_judge.c ---- */
 LamSpread LamSpreadOf(PetscInt n, const PetscReal values[]);
 /* Error of a response; NaN if not known. Not for LAM_ERROR_MACRO. */
-PetscReal LamErrorOf(LamErrorKind kind, LamInterfaceLawType interface, const LamResponse *answer,
+PetscReal LamErrorOf(LamErrorKind kind, const LamMicrostructure *micro, const LamResponse *answer,
                      const LamResponse *reference);
 /* Errors of the reactions of all sides together, and of the work. */
 void LamMacroErrors(const LamMacroOutcome *answer, const LamMacroOutcome *reference, PetscReal errors[2]);

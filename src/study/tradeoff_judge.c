@@ -43,16 +43,16 @@ static PetscReal RelativeDifference(PetscInt n, const PetscReal a[], const Petsc
   return size > 0 ? PetscSqrtReal(difference / size) : NAN;
 }
 
-PetscReal LamErrorOf(LamErrorKind kind, LamInterfaceLawType interface, const LamResponse *answer,
+PetscReal LamErrorOf(LamErrorKind kind, const LamMicrostructure *micro, const LamResponse *answer,
                      const LamResponse *reference)
 {
   switch (kind) {
   case LAM_ERROR_P:
-    return LamStressError(answer->P, reference->P);
+    return LamStressError(LamStressScaleOf(micro), answer->P, reference->P);
   case LAM_ERROR_TANGENT:
     return RelativeDifference(81, answer->tangent, reference->tangent);
   case LAM_ERROR_OPENING:
-    if (interface == LAM_INTERFACE_CONTACT) return fabs(answer->opening_fraction - reference->opening_fraction);
+    if (micro->interface == LAM_INTERFACE_CONTACT) return fabs(answer->opening_fraction - reference->opening_fraction);
     return fabs(answer->lumen_fraction - reference->lumen_fraction);
   default:
     return NAN;
@@ -92,7 +92,7 @@ static void JudgeStates(const LamReference *reference, PetscInt states, LamMeasu
       PetscReal e;
 
       if (!reference->used[s]) continue;
-      e = LamErrorOf((LamErrorKind)k, m->setting.micro.interface, &m->responses[s], &reference->responses[s]);
+      e = LamErrorOf((LamErrorKind)k, &m->setting.micro, &m->responses[s], &reference->responses[s]);
       sum += e;
       largest = isnan(e) || e > largest ? e : largest;
     }
@@ -108,7 +108,9 @@ static PetscReal FromPlan(const LamStates *states, const LamMeasurement *m, cons
   PetscReal largest = 0;
 
   for (PetscInt s = 0; s < states->n; s++)
-    if (!states->skip[s]) largest = PetscMax(largest, LamStressError(m->responses[s].P, plan->responses[s].P));
+    if (!states->skip[s])
+      largest = PetscMax(
+          largest, LamStressError(LamStressScaleOf(&plan->setting.micro), m->responses[s].P, plan->responses[s].P));
   return largest;
 }
 

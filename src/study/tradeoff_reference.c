@@ -59,18 +59,20 @@ static void Use(PetscReal accuracy, PetscInt n, LamReference *reference)
 
 static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser[], LamReference *reference)
 {
+  const LamStressScale scale = LamStressScaleOf(&scene->micro);
+
   for (PetscInt s = 0; s < n; s++) {
     const PetscBool known =
         (PetscBool)(coarser[s].status == LAM_CONVERGED && reference->responses[s].status == LAM_CONVERGED);
 
-    reference->difference[s] = known ? LamStressError(coarser[s].P, reference->responses[s].P) : NAN;
+    reference->difference[s] = known ? LamStressError(scale, coarser[s].P, reference->responses[s].P) : NAN;
   }
   Use(scene->accuracy, n, reference);
   for (int k = 0; k < LAM_ERROR_MACRO; k++) {
     reference->error[k] = reference->used_count ? 0 : NAN;
     for (PetscInt s = 0; s < n; s++)
       if (reference->used[s])
-        reference->error[k] = PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, scene->micro.interface,
+        reference->error[k] = PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, &scene->micro,
                                                                        &coarser[s], &reference->responses[s]));
   }
 }

@@ -9,7 +9,7 @@
   does not affect one setting alone; then tables and bodies. A setting that takes more than half of the remaining time
   of its part is abandoned.
 */
-#include "error_model.h"
+#include "mesh_choice.h"
 #include "rounding.h"
 #include "tradeoff.h"
 #include <errno.h>
@@ -212,7 +212,7 @@ static PetscErrorCode Prepare(LamTradeoff *t)
   PetscFunctionBeginUser;
   t->start = LamClock();
   PetscCall(LamSceneRead(t->scene_path, &t->scene));
-  PetscCall(LamChooseMesh(t->scene));
+  PetscCall(LamChooseMesh(t->scene, NULL));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &t->reporter, &t->scene->micro, t->scene->accuracy));
   PetscCall(LamStatesMake(t->scene, &t->states));
   PetscCheck(t->states.n || IsStopped(), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,

@@ -71,6 +71,7 @@ struct LamTable_s {
   const LamNodeSet *source; /* borrowed; its array may be reallocated between queries */
   struct LamGrid_s *grid;   /* borrowed */
   PetscBool uniform;        /* all cells of the tissue are identical */
+  LamStressScale scale;     /* of errors */
   PetscInt state_count, node_count;
   PetscInt *data;        /* [state_count] indices in source->data */
   LamTableState *states; /* written under the lock; valid to read when their node's stage is LAM_NODE_MADE */
@@ -106,8 +107,8 @@ typedef struct {
 } LamTableSum;
 
 /* ---- table_make.c ---- */
-/* Creates a table of the nodes now in `source`; source and grid must outlive it. */
-PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table);
+/* Creates a table of the nodes now in `source`, of this tissue; source and grid must outlive it. */
+PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, const LamMicrostructure *micro, LamTable *table);
 LamTable LamTableReference(LamTable table); /* adds a reference */
 
 /* For n items at first. */

@@ -90,7 +90,7 @@ static PetscErrorCode MakeNodes(LamTable table)
 
 /* ---- the table ---- */
 
-PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool uniform, LamTable *table)
+PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, const LamMicrostructure *micro, LamTable *table)
 {
   LamTable t;
 
@@ -99,7 +99,8 @@ PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, PetscBool un
   t->references = 1;
   t->source = source;
   t->grid = grid;
-  t->uniform = uniform;
+  t->uniform = (PetscBool)!micro->cell;
+  t->scale = LamStressScaleOf(micro);
   PetscCall(PetscMalloc1(t->grid->free.n + 1, &t->free_data));
   for (PetscInt m = 0; m < t->grid->free.n; m++) t->free_data[m] = -1;
   /* recursive, because computing a node computes nodes of coarser levels */

@@ -210,14 +210,6 @@ static PetscReal FloatingError(const struct LamGrid_s *grid, const LamTablePoint
   return 0.03 * PetscMax(0, 1 - middle / 0.012) * PetscMin(1, most / 0.2);
 }
 
-static PetscReal Relative(PetscReal error, const PetscReal P[9])
-{
-  PetscReal square = 0;
-
-  for (int i = 0; i < 9; i++) square += P[i] * P[i];
-  return error / (sqrt(square) + LAM_STRESS_FLOOR);
-}
-
 /* ---- from the sum to the response ---- */
 
 /* Psi and its derivatives in x, p and g, in the order of the lattice directions. */
@@ -353,7 +345,8 @@ static PetscBool Fill(LamTable table, Place *place, LamResponse *r)
   FillPotential(table, place, &potential, r);
   LamTableThickness(table, &place->point, place->leaf, &place->lattice, r);
   r->error_estimate =
-      place->floating ? FloatingError(table->grid, &place->point) : Relative(hypot(along_strain, along_suction), r->P);
+      place->floating ? FloatingError(table->grid, &place->point)
+                      : LamStressErrorOfSize(table->scale, hypot(along_strain, along_suction), r->P);
   return PETSC_TRUE;
 }
 

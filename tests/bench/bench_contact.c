@@ -10,6 +10,7 @@
 */
 #include <stdio.h>
 #include "support/random_contact.h"
+#include "support/tissue.h"
 #include "options.h"
 #include "measure.h"
 
@@ -115,7 +116,7 @@ static PetscErrorCode MeasureCase(const Tissue tissue[WAYS], int repeats, Case *
     const LamResponse *response = &result[w].response;
 
     result[w].ms = Quantile(ms[w], repeats, 0.5);
-    result[w].error = c->has_reference && IsSolved(response) ? LamStressError(response->P, c->P_reference) : NAN;
+    result[w].error = c->has_reference && IsSolved(response) ? StressError(response->P, c->P_reference) : NAN;
   }
   PetscFunctionReturn(0);
 }
@@ -181,7 +182,7 @@ static double Difference(const Result result[WAYS])
 {
   const LamResponse *two = &result[TWO_STEP].response, *one = &result[ONE_STEP].response;
 
-  return IsSolved(two) && IsSolved(one) ? LamStressError(one->P, two->P) : NAN;
+  return IsSolved(two) && IsSolved(one) ? StressError(one->P, two->P) : NAN;
 }
 
 static void PrintStates(int mesh, int n, const Case list[])

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include "options.h"
 #include "support/contact_checks.h"
+#include "support/tissue.h"
 
 #define DATA LAMELLA_SOURCE_DIR "/tests/verification/data/contact.json"
 #define MESHES 4
@@ -89,7 +90,7 @@ static PetscErrorCode States(int used_meshes)
 
     printf("shear %g, turgor %g MPa\n", cases[0][k].shear, cases[0][k].turgor);
     for (int m = 0; m < used_meshes; m++) PrintState(meshes[m][0], meshes[m][1], &cases[m][k].response);
-    printf("  change between the last two, norm of accuracy: %.2e\n", LamStressError(before->P, last->P));
+    printf("  change between the last two, norm of accuracy: %.2e\n", StressError(before->P, last->P));
   }
   PetscFunctionReturn(0);
 }

@@ -14,6 +14,7 @@
 #include <lamella/lamella.h>
 #include "app.h"
 #include "support/random_reals.h"
+#include "support/tissue.h"
 
 enum { MAX_STEPS = 64 };
 
@@ -73,8 +74,8 @@ static PetscErrorCode SampleRespond(void *ctx, PetscInt n, const LamLoad loads[]
     s->asked++;
     s->seconds += end - start;
     if (!LamResponseHasFields(&exact) || !LamResponseHasFields(&responses[i])) continue;
-    s->worst = PetscMax(s->worst, LamStressError(responses[i].P, exact.P));
-    s->square += PetscSqr(LamStressError(responses[i].P, exact.P));
+    s->worst = PetscMax(s->worst, StressError(responses[i].P, exact.P));
+    s->square += PetscSqr(StressError(responses[i].P, exact.P));
   }
   PetscFunctionReturn(0);
 }

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <petsctime.h>
 #include "support/contact_tissue.h"
+#include "support/tissue.h"
 #include "free_cell.h"
 #include "lattice_strain.h"
 #include "options.h"
@@ -108,7 +109,7 @@ static PetscErrorCode Try(LamResponder solver, double s, const double x[3], doub
   P[4] = COHESION * r.load.F[0];
   P[8] = r.P[8];
   printf("touches: s %.4f MPa, strains above a(s) %.4f %.4f %.4f, error of P %.1e\n", s * TISSUE_STRESS, x[0] - a,
-         x[1] - a, x[2] - a, LamStressError(P, r.P));
+         x[1] - a, x[2] - a, StressError(P, r.P));
   PetscFunctionReturn(0);
 }
 

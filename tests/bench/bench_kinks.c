@@ -155,7 +155,7 @@ static PetscErrorCode RunState(Options *o, int n, Class classes[MESHES][CLASSES]
   }
   printf("%5d  %.3f  %5.1f  %.3f  %5.2f  %5.2f", n, (double)s.micro.wall_thickness, s.ratio, s.shear, s.e[0], s.e[1]);
   for (int m = 0; m <= finest; m++) {
-    const double error = LamStressError(r[m].P, r[finest].P);
+    const double error = StressError(r[m].P, r[finest].P);
 
     printf(" | %.4f %7.3f %.2e %.2e %2d", (double)r[m].kinked_fraction, (double)r[m].wall_ellipticity, error,
            (double)r[m].error_estimate, (int)r[m].branch);

@@ -11,6 +11,7 @@
 #include "measure.h"
 #include "options.h"
 #include "support/uneven_cells.h"
+#include "support/tissue.h"
 
 #define COUNT(list) ((int)(sizeof(list) / sizeof((list)[0])))
 #define LARGEST_BLOCK 8 /* without --full */
@@ -76,7 +77,7 @@ static PetscErrorCode PrintStrategies(void)
              patch_turgors[p], LamStrategyNames[strategy], LamStatusNames[r->status], r->seconds,
              (int)r->newton_iterations, (int)r->factorisations, r->max_gap, r->open_fraction, r->debonded_fraction,
              TISSUE_STRESS * r->P[0], TISSUE_STRESS * r->P[1], TISSUE_STRESS * r->P[3], TISSUE_STRESS * r->P[4],
-             LamStressError(r->P, list[p][LAM_TWO_STEP].P));
+             StressError(r->P, list[p][LAM_TWO_STEP].P));
     }
   PetscFunctionReturn(0);
 }

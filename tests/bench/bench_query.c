@@ -231,7 +231,7 @@ static PetscErrorCode Errors(const Bench *bench, const Scheme *scheme, PetscReal
     LamResponse r;
 
     PetscCall(scheme->answer(scheme, &bench->truth[i].load, accuracy, &r));
-    if (r.status == LAM_CONVERGED) errors[(*n)++] = LamStressError(r.P, bench->truth[i].P);
+    if (r.status == LAM_CONVERGED) errors[(*n)++] = StressError(r.P, bench->truth[i].P);
   }
   PetscFunctionReturn(0);
 }

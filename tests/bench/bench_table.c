@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <petsctime.h>
 #include "support/random_reals.h"
+#include "support/tissue.h"
 #include <hermite_cell.h>
 #include "measure.h"
 
@@ -136,7 +137,7 @@ static double WorstError(PetscBool contact, int level)
     const LamLoad load = LoadAt(&t, u, RandomReal(&seed, 0, LAM_ROOT), 0);
     const LamResponse r = Ask(&t, &load), exact = TissueAnswer(&t.tissue, &load);
 
-    worst = fmax(worst, LamStressError(r.P, exact.P));
+    worst = fmax(worst, StressError(r.P, exact.P));
   }
   AnalyticTableClose(&t);
   return worst;

@@ -1,4 +1,4 @@
-# lamella check: the plan, without MPI, in agreement with what is then solved.
+# lamella check: the plan, in agreement with what is then solved.
 . "$(dirname "$0")/common.sh"
 
 # number FILE NAME: the first number of that name in a JSON line
@@ -36,11 +36,11 @@ mesh() {
 }
 
 scene "[1, 1]" 11.25 0.01 ""
-mesh "6 2"
+mesh "10 1"
 scene "[1, 1]" 11.25 0.005 ""
-mesh "8 2"
+mesh "12 2"
 scene "[1, 1]" 11.25 0.001 ""
-mesh "12 4"
+mesh "16 4"
 scene "[1, 1]" 30 0.01 ""
 mesh "8 2"
 scene "[1, 1]" 11.25 0.001 "  mesh: {along: 3, through: 1}"
@@ -93,7 +93,7 @@ has text.txt "a patch of 2 columns and 3 rows of cells between grips, lateral si
 
 # for a person: model, mesh, cost
 "$lamella" check "$source/tests/scenes/tissue-block.yaml" >text.txt || fail "exit status $?"
-has text.txt "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "6 elements along" "644; one state" "about .* MB" \
+has text.txt "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "10 elements along" "596; one state" "about .* MB" \
   "576 material points"
 
 # a body's regions, each with its own tissue and mesh

@@ -12,6 +12,7 @@ macro:
 YAML
 "$lamella" fe2 block.yaml --quiet -o direct.h5 >/dev/null
 "$lamella" fe2 block.yaml --quiet -d db.h5 -o cache.h5 >/dev/null
+"$lamella" fe2 block.yaml --quiet -d db.h5 >/dev/null # nodes that came later ask for some more
 "$lamella" fe2 block.yaml --quiet -d db.h5 --response database -o database.h5 >/dev/null
 /usr/bin/python3 - >loads <<'PYTHON'
 import h5py

@@ -18,7 +18,7 @@ expect 0 -e 'events that rest on tractions' "$lamella" process "$example" -d d.h
 
 # a table for people
 expect 0 "$lamella" process "$example"
-grep -qE '^ +6\.7[0-9]+ .* lamella_normal$' out.txt || fail "the row of the event: $(grep lamella out.txt)"
+grep -qE '^ +6\.9[0-9]+ .* lamella_normal$' out.txt || fail "the row of the event: $(grep lamella out.txt)"
 
 # the file, and its pictures
 expect 0 -o '"kind": "process"' "$lamella" info a.h5 --json

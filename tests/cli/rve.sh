@@ -8,6 +8,7 @@ scene() {
 
 # JSON Lines and nothing else; every member of the contract
 scene "along: 3, through: 1" "{F: [[1, 0.1], [0, 1]]}" "{ramp: {to: [[1, 0.3], [0, 1]], steps: 2}, turgor: 0.01 MPa}"
+echo "accuracy: 0.1" >>scene.yaml
 expect 0 "$lamella" rve scene.yaml --json -o out.h5
 [ "$(wc -l <out.txt)" -eq 3 ] || fail "not one line per state: $(cat out.txt)"
 [ -s err.txt ] && fail "says something on stderr: $(cat err.txt)"

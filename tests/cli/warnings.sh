@@ -93,8 +93,9 @@ silent process through.yaml
 
 # turgor beyond what the walls hold: in the scene, in a load, in a region, in surroundings, in a map
 inflated() { # TURGOR
-  tissue turgor="mode: prescribed, pressure: $1" mesh='along: 6, through: 2' <<'YAML'
+  tissue turgor="mode: prescribed, pressure: $1" mesh='along: 6, through: 2, grading: 0.9' <<'YAML'
 load: [{inflate: true}]
+accuracy: 0.1
 YAML
 }
 inflated '0.4 MPa' >tight.yaml

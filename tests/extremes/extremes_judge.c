@@ -98,9 +98,9 @@ static PetscBool AllFinite(const LamResponse *r)
   return finite;
 }
 
-static PetscReal Difference(const LamResponse *a, const LamResponse *b)
+static PetscReal Difference(LamStressScale scale, const LamResponse *a, const LamResponse *b)
 {
-  return a->status == LAM_CONVERGED && b->status == LAM_CONVERGED ? LamStressError(a->P, b->P) : NAN;
+  return a->status == LAM_CONVERGED && b->status == LAM_CONVERGED ? LamStressError(scale, a->P, b->P) : NAN;
 }
 
 static ExtremesVerdict Verdict(const ExtremesResult *r)
@@ -124,6 +124,7 @@ PetscErrorCode ExtremesJudge(const ExtremesCase *c, PetscBool routes, ExtremesRe
   const ExtremesRoute one_step = {.finer = 1, .ramp = 1, .one_step = PETSC_TRUE}, finer = {.finer = 2, .ramp = 1};
   const double begin = Now();
   LamRVEEstimate estimate;
+  LamStressScale scale;
   Solver s;
 
   PetscFunctionBeginUser;
@@ -131,20 +132,21 @@ PetscErrorCode ExtremesJudge(const ExtremesCase *c, PetscBool routes, ExtremesRe
   PetscCall(SolverCreate(c, &plain, 2 * EXTREMES_SECONDS, &s));
   PetscCall(SolveLoads(&s, &result->state));
   result->seconds = Now() - begin;
+  scale = LamStressScaleOf(&s.rve->micro);
   PetscCall(LamRVEEstimateCreate(s.rve, &estimate));
   PetscCall(LamRVEEstimateError(estimate, s.state, &result->state));
   PetscCall(LamRVEEstimateDestroy(&estimate));
   routes = (PetscBool)(routes && result->state.status == LAM_CONVERGED);
   if (routes) {
     PetscCall(SolveRoute(c, &ramp, RouteSeconds(result), &result->path));
-    result->path_error = Difference(&result->state, &result->path);
+    result->path_error = Difference(scale, &result->state, &result->path);
     if (c->contact) {
       PetscCall(SolveRoute(c, &one_step, RouteSeconds(result), &result->other));
-      result->other_error = Difference(&result->state, &result->other);
+      result->other_error = Difference(scale, &result->state, &result->other);
     }
     if (s.rve->mesh.element_count <= FINER_LIMIT) {
       PetscCall(SolveRoute(c, &finer, 2 * RouteSeconds(result), &result->finer));
-      result->mesh_error = Difference(&result->state, &result->finer);
+      result->mesh_error = Difference(scale, &result->state, &result->finer);
     }
   }
   PetscCall(SolverDestroy(&s));

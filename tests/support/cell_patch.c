@@ -1,4 +1,5 @@
 #include "cell_patch.h"
+#include "support/tissue.h"
 #include "tissue.h"
 
 #define PATCH_ORIENTATION 30.0 /* cells stand on an edge */
@@ -70,13 +71,13 @@ PetscErrorCode BondedPatchErrors(double error[PATCH_SIZES], double *limit)
   for (int k = 0; k < PATCH_SIZES; k++) {
     micro.cells[0] = micro.cells[1] = patch_sizes[k];
     PetscCall(SolveOnce(&micro, &load, &r));
-    error[k] = LamStressError(r.P, periodic.P);
+    error[k] = StressError(r.P, periodic.P);
     for (int i = 0; i < 9; i++) {
       extrapolated[i] = 2.0 * r.P[i] - last[i]; /* sizes double */
       last[i] = r.P[i];
     }
   }
-  *limit = LamStressError(extrapolated, periodic.P);
+  *limit = StressError(extrapolated, periodic.P);
   PetscFunctionReturn(0);
 }
 

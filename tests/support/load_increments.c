@@ -1,4 +1,5 @@
 #include "load_increments.h"
+#include "support/tissue.h"
 #include "tissue.h"
 
 #define INCREMENT_WATER (2200.0 / TISSUE_STRESS)
@@ -144,7 +145,7 @@ PetscErrorCode LargeStepSolve(LamRVE rve, const LargeStep *step, double turgor, 
     l->small_iterations += l->small.newton_iterations;
     if (l->small.status != LAM_CONVERGED) l->failed = k;
   }
-  l->apart = LamStressError(l->once.P, l->small.P);
+  l->apart = StressError(l->once.P, l->small.P);
   PetscCall(LamRVEStateDestroy(&state));
   PetscFunctionReturn(0);
 }

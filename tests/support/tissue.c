@@ -11,6 +11,13 @@ LamMicrostructure DefaultTissue(void)
   return micro;
 }
 
+PetscReal StressError(const PetscReal P[9], const PetscReal P_ref[9])
+{
+  const LamMicrostructure micro = DefaultTissue();
+
+  return LamStressError(LamStressScaleOf(&micro), P, P_ref);
+}
+
 LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
 {
   LamLoad load = {.F = {F11, F12, 0, F21, F22, 0, 0, 0, 1}, .turgor = turgor};

@@ -7,6 +7,8 @@
 #define TISSUE_STRESS 0.11 /* C1 + C2 of the default tissue, MPa */
 /* The default tissue (C1 = 0.1, C2 = 0.01, C4 = 1 MPa) with one cell and the coarse mesh. */
 LamMicrostructure DefaultTissue(void);
+/* LamStressError of this tissue. */
+PetscReal StressError(const PetscReal P[9], const PetscReal P_ref[9]);
 LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor);
 /* An RVE that is set up, and a state of it (or NULL); with lumens that may be sealed. */
 PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state);

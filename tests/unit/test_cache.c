@@ -1,5 +1,6 @@
 /* Claims about answers from a database with a solver behind it. Runs on any number of ranks. */
 #include "support/test.h"
+#include "support/tissue.h"
 #include <lamella/cache.h>
 #include "support/synthetic_responder.h"
 
@@ -152,7 +153,7 @@ static PetscReal Error(const Fixture *fixture, PetscInt p)
 
   CHECK(LamResponseInit(&fixture->loads[p], &exact));
   SyntheticEvaluate(fixture->material, &fixture->loads[p], &exact);
-  return LamStressError(fixture->responses[p].P, exact.P);
+  return StressError(fixture->responses[p].P, exact.P);
 }
 
 /* Nodes around a state, as a question that asks for more accuracy would add them. */

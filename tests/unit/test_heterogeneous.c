@@ -51,7 +51,7 @@ static void SetUp(Fixture *fixture)
     assert_int_equal(SyntheticCreate(count, &fixture->responder[t], &fixture->material[t]), 0);
     fixture->material[t]->respond = StiffRespond;
     fixture->material[t]->mu = 1 + t;
-    fixture->tissues[t] = (LamHeterogeneousTissue){names[t], stress[t], fixture->responder[t]};
+    fixture->tissues[t] = (LamHeterogeneousTissue){names[t], stress[t], {1, 1}, fixture->responder[t]};
   }
   assert_int_equal(LamHeterogeneousCreate(TISSUES, fixture->tissues, POINTS, points, &fixture->heterogeneous), 0);
 }

@@ -1,6 +1,7 @@
 /* Merging databases: each question once, in the order of the files, and all of it or nothing. */
 #define _GNU_SOURCE /* memmem */
 #include "merge_fixture.h"
+#include "support/tissue.h"
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -50,7 +51,7 @@ MERGE_TEST(of_two_answers_the_first_is_kept_and_their_difference_told)
   MergeShards(2, 0);
   assert_int_equal(report.duplicates, 1);
   assert_int_equal(report.differing, 1);
-  assert_true(report.difference == LamStressError(r.P, first.P));
+  assert_true(report.difference == StressError(r.P, first.P));
   kept = OnlyRecord();
   AssertSame(&kept, &first);
 }

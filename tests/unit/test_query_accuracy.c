@@ -1,5 +1,6 @@
 /* Answers from scattered records: how good they are, and when there is none. */
 #include "query_fixture.h"
+#include "support/tissue.h"
 
 static void AssertRefused(LamDatabase db, LamLoad load, PetscReal accuracy)
 {
@@ -33,7 +34,7 @@ static PetscReal StressErrorAt(PetscReal step)
 
   AddExact(db, Load(1.1, 0.1, 0, 1, 0.3));
   r = Ask(db, near);
-  return LamStressError(r.P, exact.P);
+  return StressError(r.P, exact.P);
 }
 
 TEST(the_stress_error_falls_with_the_square_of_the_distance)
@@ -129,5 +130,5 @@ QUERY_TEST(the_error_of_a_record_alone_is_estimated_by_its_distance, Make(1, 1))
 
   AddExact(db, Load(1.05, 0.03, -0.02, 1.01, 0.1));
   r = Ask(db, probe);
-  assert_true(r.error_estimate > LamStressError(r.P, exact.P));
+  assert_true(r.error_estimate > StressError(r.P, exact.P));
 }

@@ -1,6 +1,7 @@
 /* Responses: what is unknown is NaN, the table of members is complete, the error norm is that of
  * docs/reference/commands.md. */
 #include "support/test.h"
+#include "support/tissue.h"
 #include <lamella/response.h>
 #include <string.h>
 
@@ -52,10 +53,28 @@ TEST(members_have_different_names)
 
 TEST(the_stress_error_is_relative_with_a_floor)
 {
+  const LamStressScale scale = {0.02, 0.01};
   const PetscReal zero[9] = {0}, P[9] = {3, 0, 0, 0, 4, 0, 0, 0, 0};
 
-  assert_near(LamStressError(zero, P), 5 / 5.0227, 1e-15);
-  assert_near(LamStressError(P, zero), 5 / 0.0227, 1e-12);
+  assert_near(LamStressError(scale, zero, P), 1, 1e-15);
+  assert_near(LamStressError(scale, P, zero), 5 / 0.02, 1e-12);
+}
+
+TEST(the_stress_along_the_prisms_has_an_error_of_its_own)
+{
+  const LamStressScale scale = {0.02, 0.01};
+  const PetscReal P[9] = {3, 0, 0, 0, 4, 0, 0, 0, -2}, other[9] = {3, 0, 0, 0, 4, 0, 0, 0, -1};
+
+  assert_near(LamStressError(scale, other, P), 0, 0);
+  assert_near(LamAxialError(scale, other, P), 0.5, 1e-15);
+}
+
+TEST(an_unknown_stress_has_an_unknown_error)
+{
+  const LamStressScale scale = {0.02, 0.01};
+  const PetscReal P[9] = {3, 0, 0, 0, 4, 0, 0, 0, -2}, unknown[9] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+
+  assert_true(isnan(LamStressError(scale, unknown, P)));
 }
 
 TEST(only_converged_and_unstable_states_have_fields)

@@ -1,6 +1,7 @@
 /* Answers of the table from records of a known potential: exact at the nodes, derivatives of one potential between
  * them. */
 #include "support/test.h"
+#include "support/tissue.h"
 #include <stdlib.h>
 #include <unistd.h>
 #include "support/analytic_table.h"
@@ -165,8 +166,8 @@ TABLE_TEST(finer_nodes_of_one_interval_bring_the_answer_nearer, AnalyticTableOpe
         AddPlace(t, i, j);
       }
     assert_true(Answers(t, &load, &r));
-    if (level) assert_true(LamStressError(r.P, exact.P) < 0.7 * before);
-    before = LamStressError(r.P, exact.P);
+    if (level) assert_true(StressError(r.P, exact.P) < 0.7 * before);
+    before = StressError(r.P, exact.P);
   }
 }
 
@@ -185,7 +186,7 @@ TABLE_TEST(at_the_suction_of_its_states_a_cell_needs_no_others, AnalyticTableOpe
     AddPlace(t, i, LAM_ROOT);
   }
   assert_true(Answers(t, &load, &r));
-  assert_true(LamStressError(r.P, exact.P) < 0.02);
+  assert_true(StressError(r.P, exact.P) < 0.02);
   assert_near(r.energy_turgor, exact.energy_turgor, 0.02);
   assert_false(Answers(t, &beside, &r));
 }

@@ -1,5 +1,6 @@
 /* What the table refuses, which nodes it asks for then, and that it survives records that are none of its own. */
 #include "support/test.h"
+#include "support/tissue.h"
 #include <stdlib.h>
 #include <string.h>
 #include "support/analytic_table.h"
@@ -93,7 +94,7 @@ TEST(what_is_needed_makes_the_answer)
     r = AskFor(&t, &load, accuracy);
     assert_int_equal(r.status, LAM_CONVERGED);
     assert_true(r.error_estimate <= accuracy);
-    assert_true(LamStressError(r.P, exact.P) < accuracy);
+    assert_true(StressError(r.P, exact.P) < 2 * accuracy); /* of one response; test_table_estimate judges many */
   }
 }
 

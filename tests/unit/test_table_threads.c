@@ -142,7 +142,7 @@ TEST(threads_that_make_the_nodes_of_a_table_are_answered_alike)
   OWNED(LamTable, LamTableDestroy) table;
 
   AskAlone(NULL);
-  assert_int_equal(LamTableMake(&database->nodes, database->grid, PETSC_TRUE, &table), 0);
+  assert_int_equal(LamTableMake(&database->nodes, database->grid, &database->header.micro, &table), 0);
   ReadInThreads(table);
 }
 

@@ -1,4 +1,4 @@
-/* The estimate of the error of P from half as many elements, against the error on a fine mesh. */
+/* The estimate of the error of P from a finer mesh, against the error on a much finer one. */
 #include "support/rve_fixture.h"
 #include "solve.h"
 
@@ -12,24 +12,18 @@ static LamLoad Load(int k)
   return PlaneLoad(loads[k][0], loads[k][1], loads[k][2], loads[k][3], loads[k][4]);
 }
 
-static LamResponse EstimatedOf(const LamMicrostructure *micro, LamLoad load, LamWanted wanted)
+static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
 {
   OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(micro);
   OWNED(LamRVEState, LamRVEStateDestroy) state;
   OWNED(LamRVEEstimate, LamRVEEstimateDestroy) estimate;
   LamResponse response;
 
-  assert_int_equal(LamRVESetWanted(rve, wanted), 0);
   assert_int_equal(LamRVEStateCreate(rve, &state), 0);
   assert_int_equal(LamRVEEstimateCreate(rve, &estimate), 0);
   assert_int_equal(LamRVESolve(rve, &load, state, &response), 0);
   assert_int_equal(LamRVEEstimateError(estimate, state, &response), 0);
   return response;
-}
-
-static LamResponse Estimated(const LamMicrostructure *micro, LamLoad load)
-{
-  return EstimatedOf(micro, load, LAM_WANT_ALL);
 }
 
 /* Number of states whose estimate is within a factor of the error. */
@@ -42,11 +36,11 @@ static int CountWithin(double factor, LamInterfaceLawType interface, double grad
   micro.grading = grading;
   fine = micro;
   micro.along = along;
-  fine.along = 16;
+  fine.along = 24;
   fine.through = interface == LAM_INTERFACE_BONDED ? 4 : 3;
   for (int k = 0; k < STATES; k++) {
     const LamResponse r = Estimated(&micro, Load(k)), truth = SolveTissue(&fine, Load(k));
-    const double error = LamStressError(r.P, truth.P);
+    const double error = LamWholeError(LamStressScaleOf(&micro), r.P, truth.P);
 
     assert_int_equal(r.status, LAM_CONVERGED);
     assert_true(r.error_estimate > 0);
@@ -55,57 +49,22 @@ static int CountWithin(double factor, LamInterfaceLawType interface, double grad
   return within;
 }
 
-/* Finer meshes wrinkle where these cannot: sheared by 0.5, P is 3 % off where half as many elements tell 0.4 %. */
-TEST(IsLargerWhereWallsKink)
-{
-  const LamMicrostructure micro = DefaultTissue();
-  const LamLoad load = PlaneLoad(1, 0.5, 0, 1, 0);
-  const LamResponse known = Estimated(&micro, load), unknown = EstimatedOf(&micro, load, LAM_WANT_STRESS);
-
-  assert_true(known.kinked_fraction > LAM_KINKED_SHARE && isnan(unknown.kinked_fraction));
-  assert_true(known.error_estimate > 3.0 * unknown.error_estimate);
-}
-
 TEST(IsNearTheErrorOfBondedTissue)
 {
-  assert_int_equal(CountWithin(5, LAM_INTERFACE_BONDED, 0.7, 6), STATES);
+  assert_int_equal(CountWithin(3, LAM_INTERFACE_BONDED, 0.9, 6), STATES);
   assert_true(CountWithin(3, LAM_INTERFACE_BONDED, 0.0, 6) >= STATES - 1);
 }
 
-TEST_IS(IsNearTheErrorOfContactTissue, assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.0, 6) >= STATES - 1));
+TEST_IS(IsNearTheErrorOfContactTissue, assert_true(CountWithin(5, LAM_INTERFACE_CONTACT, 0.6, 6) == STATES));
 
-/* An odd number of elements along a face cannot be halved. */
-TEST(IsNotKnownForOddMeshes)
+/* Finer meshes wrinkle where these two cannot: sheared by 0.5, P is 3.7 % off and the meshes differ by 0.7 %. */
+TEST(IsLargerWhereWallsKink)
 {
-  LamMicrostructure micro = DefaultTissue();
+  const LamMicrostructure micro = DefaultTissue();
+  const LamResponse r = Estimated(&micro, PlaneLoad(1, 0.5, 0, 1, 0));
 
-  micro.along = 5;
-  assert_true(isnan(Estimated(&micro, Load(0)).error_estimate));
-}
-
-/* Both meshes are far too coarse for walls of 0.005 apothems, which bend next to junctions. */
-TEST(IsNotKnownForMeshesThatTellNothing)
-{
-  LamMicrostructure micro = DefaultTissue();
-
-  micro.wall_thickness = 0.005;
-  assert_true(isnan(Estimated(&micro, Load(3)).error_estimate));
-}
-
-/* Edges of ten times the thickness: errors fall with the first power of their length, by half for half the length. */
-TEST(IsTheWholeDifferenceWhereErrorsFallSlowly)
-{
-  LamMicrostructure micro = DefaultTissue(), coarse;
-  LamResponse estimated, half;
-
-  micro.wall_thickness = 0.01;
-  micro.along = 12;
-  coarse = micro;
-  coarse.along = 6;
-  coarse.through = 1;
-  estimated = Estimated(&micro, Load(3));
-  half = SolveTissue(&coarse, Load(3));
-  assert_near(estimated.error_estimate, LamStressError(half.P, estimated.P), 1e-6);
+  assert_true(r.kinked_fraction > LAM_KINKED_SHARE);
+  assert_true(r.error_estimate > 0.01);
 }
 
 TEST(ChangesNothingOfTheState)

@@ -32,7 +32,7 @@ TEST(OneGoAndSmallStepsAgree)
 
     assert_int_equal(LamRVESolve(rve, &load, point, &r), 0);
   }
-  assert_true(LamStressError(r.P, once.P) < 1e-8);
+  assert_true(StressError(r.P, once.P) < 1e-8);
 }
 
 static void AssertInvalid(LamLoad load, const char fragment[])

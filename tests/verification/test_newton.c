@@ -81,7 +81,7 @@ TEST(SolutionIsItsOwnStart)
   assert_int_equal(LamRVESolve(rve, &load, point, &first), 0);
   assert_int_equal(LamRVESolve(rve, &load, point, &again), 0);
   assert_int_equal(again.newton_iterations, 0);
-  assert_true(LamStressError(again.P, first.P) < 1e-12);
+  assert_true(StressError(again.P, first.P) < 1e-12);
 }
 
 /* Rounding grows with the size of the RVE and with the slenderness of the elements; the tolerance must follow it. */

@@ -21,12 +21,12 @@ TEST(BothStrategiesConverge)
 TEST(BothStrategiesFindTheSameStressUnderTurgor)
 {
   for (int p = 1; p < PATCH_TURGORS; p++)
-    assert_near(LamStressError(states[p][LAM_ONE_STEP].P, states[p][LAM_TWO_STEP].P), 0.0, 1e-6);
+    assert_near(StressError(states[p][LAM_ONE_STEP].P, states[p][LAM_TWO_STEP].P), 0.0, 1e-6);
 }
 
 /* Empty tissue has several discrete solutions, which differ in hats at junctions. */
 TEST_IS(BothStrategiesFindCloseStressesInEmptyTissue,
-        assert_near(LamStressError(states[0][LAM_ONE_STEP].P, states[0][LAM_TWO_STEP].P), 0.0, 5e-3));
+        assert_near(StressError(states[0][LAM_ONE_STEP].P, states[0][LAM_TWO_STEP].P), 0.0, 5e-3));
 
 TEST(TurgorClosesTheInterfaces)
 {

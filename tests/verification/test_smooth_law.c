@@ -64,7 +64,7 @@ TEST(ContactErrorIsTheChangeToNoWidthToFirstOrder)
     double P[9];
 
     for (int i = 0; i < 9; i++) P[i] = r.P[i] - w * (up.P[i] - down.P[i]) / (2.0 * step);
-    assert_near(r.contact_error / LamStressError(P, r.P), 1.0, 1e-4);
+    assert_near(r.contact_error / StressError(P, r.P), 1.0, 1e-4);
   }
 }
 
@@ -74,7 +74,7 @@ TEST(ContactErrorIsOfTheSizeOfTheChangeToASmallWidth)
   FOR_STATES(k)
   {
     const LamResponse r = SolveSmooth(USUAL_WIDTH, LoadOf(k)), narrow = SolveSmooth(0.1 * USUAL_WIDTH, LoadOf(k));
-    const double ratio = r.contact_error / LamStressError(narrow.P, r.P);
+    const double ratio = r.contact_error / StressError(narrow.P, r.P);
 
     assert_int_equal(narrow.status, LAM_CONVERGED);
     assert_true(ratio > 1.0 / 3.0 && ratio < 3.0);
@@ -257,7 +257,7 @@ TEST(NothingOfAFailedExactLawIsLeft)
   s.micro.sharpness = LAM_SHARPNESS_SMOOTH;
   OWNED(LamRVE, LamRVEDestroy) smooth = NewRVE(&s.micro);
   alone = Solve(smooth, s.load, at);
-  assert_near(LamStressError(tried.P, alone.P), 0.0, TOLERANCE);
+  assert_near(StressError(tried.P, alone.P), 0.0, TOLERANCE);
   assert_near(tried.energy / alone.energy, 1.0, TOLERANCE);
   assert_near(tried.contact_error / alone.contact_error, 1.0, TOLERANCE);
 }

@@ -198,7 +198,7 @@ static PetscErrorCode StartFile(LamMerge *m)
   PetscCall(LamFileCreate(m->temporary, "database", &m->scene));
   PetscCall(LamFileReserve(m->temporary, PETSC_FALSE, bytes));
   PetscCall(LamFileWrite(m->temporary, WriteTexts, m));
-  PetscCall(LamUnionCreate(m->temporary, &m->records));
+  PetscCall(LamUnionCreate(m->temporary, LamStressScaleOf(&m->scene.micro), &m->records));
   PetscFunctionReturn(0);
 }
 

@@ -25,6 +25,7 @@ struct LamUnion_s {
   hid_t file, dataset, type;
   LamRecordLayout layout;
   size_t load, status, P, seconds; /* offsets in a record */
+  LamStressScale scale;            /* of the tissue */
   PetscInt n, written;             /* records in total; in the file, the others are in `block` */
   PetscInt64 next_cache_key;
   unsigned char *block, *kept; /* [BLOCK] records; one record that was read back; owned */
@@ -55,7 +56,7 @@ static PetscErrorCode Open(LamUnion u)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamUnionCreate(const char path[], LamUnion *records)
+PetscErrorCode LamUnionCreate(const char path[], LamStressScale scale, LamUnion *records)
 {
   PetscErrorCode ierr;
   LamUnion u;
@@ -64,6 +65,7 @@ PetscErrorCode LamUnionCreate(const char path[], LamUnion *records)
   PetscCall(PetscNew(&u));
   u->file = u->dataset = u->type = H5I_INVALID_HID;
   u->next_cache_key = LAM_CACHE_KEY;
+  u->scale = scale;
   PetscCall(PetscStrncpy(u->path, path, sizeof(u->path)));
   ierr = Open(u);
   if (ierr) (void)LamUnionDestroy(&u);
@@ -267,7 +269,7 @@ static PetscErrorCode Decide(LamUnion u, PetscInt at, uint64_t content, const un
   }
   memcpy(P, bytes + u->P, sizeof(P));
   memcpy(P_kept, u->kept + u->P, sizeof(P_kept));
-  difference = LamStressError(P, P_kept);
+  difference = LamStressError(u->scale, P, P_kept);
   report->duplicates++;
   report->differing++;
   if (difference > report->difference) report->difference = difference; /* NaN if one has no stress */

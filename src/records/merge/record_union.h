@@ -13,8 +13,8 @@
 */
 typedef struct LamUnion_s *LamUnion;
 
-/* `path`: a file created by LamFileCreate, without records; it stays open until LamUnionDestroy. */
-PetscErrorCode LamUnionCreate(const char path[], LamUnion *records);
+/* `path`: a file created by LamFileCreate, without records; it stays open until LamUnionDestroy. scale: of its tissue. */
+PetscErrorCode LamUnionCreate(const char path[], LamStressScale scale, LamUnion *records);
 /* Appends the bytes of one record, whose checksum must be correct, of any version. Counts into `report`. */
 PetscErrorCode LamUnionTake(LamUnion records, const LamRecordLayout *layout, const unsigned char *bytes,
                             LamMergeReport *report);
