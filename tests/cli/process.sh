@@ -46,7 +46,7 @@ expect 3 -e 'ended at' "$lamella" process gone.yaml -o gone.h5
 expect 0 "$lamella" plot gone.h5 -o gone.svg
 
 # its way over a map of failure
-sed -e 's/steps: 8/steps: 2/; s/points: [23]/points: 2/' -e 's/law: contact}/law: contact}\n  mesh: {along: 4, through: 1}/' \
+sed -e 's/steps: 8/steps: 2/; s/points: [23]/points: 2/' -e 's/mesh: {along: 8, through: 2}/mesh: {along: 4, through: 1}/' \
   "$source/tests/scenes/map-turgor-cohesion.yaml" >map.yaml
 expect 0 "$lamella" map map.yaml -o map.h5
 tissue interface='law: contact, cohesion: 0.05 MPa' >loosening.yaml <<'YAML'
