@@ -22,6 +22,9 @@ typedef struct {
 */
 PetscErrorCode LamTryMeshes(const LamScene *scene, LamMeshTrial *trial);
 
+/* Along, through and grading of mesh k of the planner's list, by increasing cost; PETSC_FALSE beyond its end. */
+PetscBool LamListedMesh(LamInterfaceLawType interface, PetscInt k, LamMeshTrial *mesh);
+
 /* ---- mesh_choice.c ---- */
 /*
   The fastest mesh whose error is at most `accuracy`, from measurements by `tradeoff` for this tissue (its model.json;

@@ -20,16 +20,9 @@ typedef struct {
   PetscInt along, through;
 } Mesh;
 
-/* Those of the planner (mesh_trial.c), ended by 0. */
-enum { MESHES = 13 };
-static const Mesh lists[LAM_INTERFACE_LAW_COUNT][MESHES] = {
-    [LAM_INTERFACE_BONDED] =
-        {{4, 1}, {6, 1}, {8, 1}, {10, 1}, {12, 1}, {16, 1}, {12, 2}, {16, 2}, {20, 2}, {20, 4}, {28, 4}, {28, 6}},
-    [LAM_INTERFACE_CONTACT] =
-        {{4, 1}, {6, 1}, {8, 1}, {6, 2}, {8, 2}, {10, 2}, {12, 2}, {16, 2}, {16, 3}, {20, 4}, {28, 4}},
-};
+enum { MESHES = 20 };
+
 static const Mesh truths[] = {[LAM_INTERFACE_BONDED] = {36, 8}, [LAM_INTERFACE_CONTACT] = {32, 6}};
-static const PetscReal gradings[] = {[LAM_INTERFACE_BONDED] = 0.9, [LAM_INTERFACE_CONTACT] = 0.6};
 
 typedef struct {
   LamMicrostructure micro;
@@ -85,12 +78,14 @@ static PetscErrorCode SolveOn(const Sample *s, Mesh mesh, LamResponse *response,
   LamRVEState state;
   LamRVEEstimate e;
   LamResponse copy;
+  LamMeshTrial listed;
   int solves = 0;
 
   PetscFunctionBeginUser;
   micro.along = mesh.along;
   micro.through = mesh.through;
-  micro.grading = gradings[micro.interface];
+  (void)LamListedMesh(micro.interface, 0, &listed);
+  micro.grading = listed.grading;
   PetscCall(NewTissue(&micro, &rve, &state));
   PetscCall(LamRVEEstimateCreate(rve, &e));
   do { /* the first one analyses the matrix */
@@ -105,11 +100,13 @@ static PetscErrorCode SolveOn(const Sample *s, Mesh mesh, LamResponse *response,
   PetscFunctionReturn(0);
 }
 
-static int CountMeshes(const Mesh meshes[])
+/* The planner's list. */
+static int ListMeshes(LamInterfaceLawType interface, Mesh meshes[MESHES])
 {
+  LamMeshTrial mesh;
   int n = 0;
 
-  while (meshes[n].along) n++;
+  while (n < MESHES && LamListedMesh(interface, n, &mesh)) meshes[n++] = (Mesh){mesh.along, mesh.through};
   return n;
 }
 
@@ -121,14 +118,15 @@ static double ErrorOf(const LamMicrostructure *micro, const LamResponse *r, cons
 /* *useful is PETSC_FALSE where the fine mesh has no stable state. */
 static PetscErrorCode SolveAll(const Sample *s, Solved solved[MESHES], PetscBool *useful)
 {
-  const Mesh *meshes = lists[s->micro.interface];
+  Mesh meshes[MESHES];
+  const int count = ListMeshes(s->micro.interface, meshes);
   LamResponse truth, response;
   double nothing;
 
   PetscFunctionBeginUser;
   PetscCall(SolveOn(s, truths[s->micro.interface], &truth, &nothing));
   *useful = (PetscBool)(truth.status == LAM_CONVERGED);
-  for (int m = 0; m < CountMeshes(meshes) && *useful; m++) {
+  for (int m = 0; m < count && *useful; m++) {
     PetscCall(SolveOn(s, meshes[m], &response, &solved[m].estimate));
     solved[m].seconds = response.seconds;
     solved[m].error = ErrorOf(&s->micro, &response, &truth);
@@ -139,7 +137,8 @@ static PetscErrorCode SolveAll(const Sample *s, Solved solved[MESHES], PetscBool
 /* Which mesh the planner takes, and whether it warns that this one does not do. */
 static PetscErrorCode Choose(const Sample *s, double accuracy, int *chosen, PetscBool *warns)
 {
-  const Mesh *meshes = lists[s->micro.interface];
+  Mesh meshes[MESHES];
+  const int count = ListMeshes(s->micro.interface, meshes);
   LamLoad load = s->load;
   LamMeshTrial trial;
   LamScene scene = {.micro = s->micro, .accuracy = accuracy, .load_count = 1, .loads = &load};
@@ -150,7 +149,9 @@ static PetscErrorCode Choose(const Sample *s, double accuracy, int *chosen, Pets
   PetscCall(LamChooseMesh(&scene, &trial));
   *warns = (PetscBool) !(trial.error <= accuracy);
   *chosen = 0;
-  while (meshes[*chosen].along != scene.micro.along || meshes[*chosen].through != scene.micro.through) (*chosen)++;
+  while (*chosen < count - 1 &&
+         (meshes[*chosen].along != scene.micro.along || meshes[*chosen].through != scene.micro.through))
+    (*chosen)++;
   PetscFunctionReturn(0);
 }
 
@@ -185,9 +186,10 @@ static void Print(Verdict v[ACCURACIES], int estimates, int near)
 
 static void List(int n, const Sample *s, const Solved solved[])
 {
-  const Mesh *meshes = lists[s->micro.interface];
+  Mesh meshes[MESHES];
+  const int count = ListMeshes(s->micro.interface, meshes);
 
-  for (int m = 0; m < CountMeshes(meshes); m++)
+  for (int m = 0; m < count; m++)
     printf("%d  t/a %.4f C4/C1 %.2f p %.4f  %2d x %d  error %.3e  estimate %.3e  %.2f ms\n", n,
            (double)s->micro.wall_thickness, (double)(s->micro.wall.C4 / s->micro.wall.C1), (double)s->load.turgor,
            (int)meshes[m].along, (int)meshes[m].through, solved[m].error, solved[m].estimate, 1e3 * solved[m].seconds);
@@ -196,6 +198,8 @@ static void List(int n, const Sample *s, const Solved solved[])
 static PetscErrorCode Run(LamInterfaceLawType interface, int states, uint64_t seed, PetscBool list)
 {
   static Verdict verdict[ACCURACIES];
+  Mesh meshes[MESHES];
+  const int count = ListMeshes(interface, meshes);
   int estimates = 0, near = 0, failed = 0;
 
   PetscFunctionBeginUser;
@@ -214,11 +218,11 @@ static PetscErrorCode Run(LamInterfaceLawType interface, int states, uint64_t se
 
       PetscCall(Choose(&s, accuracies[k], &chosen, &warns));
       if (list)
-        printf("%d  at %g: %d x %d, error %.3e\n", n, accuracies[k], (int)lists[interface][chosen].along,
-               (int)lists[interface][chosen].through, solved[chosen].error);
+        printf("%d  at %g: %d x %d, error %.3e\n", n, accuracies[k], (int)meshes[chosen].along,
+               (int)meshes[chosen].through, solved[chosen].error);
       ratio = solved[chosen].estimate / solved[chosen].error;
       verdict[k].warned += warns && solved[chosen].error > accuracies[k];
-      Judge(CountMeshes(lists[interface]), solved, chosen, accuracies[k], &verdict[k]);
+      Judge(count, solved, chosen, accuracies[k], &verdict[k]);
       estimates++;
       near += ratio > 1 / 3.0 && ratio < 3;
     }
