@@ -54,20 +54,19 @@ PetscReal LamProcessMeasureExcess(LamProcess process, LamEvent event, const LamP
 
 /* ---- events of a material point ---- */
 
-/* Whether any part of the tissue has this interface. */
-static PetscBool Has(const LamScene *scene, LamInterfaceLawType interface)
+/* Whether the cells of any part of the tissue can part, or cannot. */
+static PetscBool Has(const LamScene *scene, PetscBool parting)
 {
-  PetscBool has = (PetscBool)(scene->micro.interface == interface);
+  PetscBool has = (PetscBool)(LamCellsPart(scene->micro.interface) == parting);
 
   for (PetscInt r = 0; r < scene->region_count; r++)
-    has = (PetscBool)(has || scene->regions[r].micro.interface == interface);
+    has = (PetscBool)(has || LamCellsPart(scene->regions[r].micro.interface) == parting);
   return has;
 }
 
 static PetscBool Applies(LamProcess process, LamEvent event)
 {
-  const PetscBool contact = Has(process->scene, LAM_INTERFACE_CONTACT),
-                  bonded = Has(process->scene, LAM_INTERFACE_BONDED);
+  const PetscBool contact = Has(process->scene, PETSC_TRUE), bonded = Has(process->scene, PETSC_FALSE);
   const LamStrength *strength = &process->scene->strength;
 
   switch (event) {

@@ -439,7 +439,7 @@ static PetscErrorCode ReportLast(LamProcess process)
 /* Reason of the end. At a limit point of interpolated responses the tissue itself may be able to continue. */
 static const char *WhyItEnds(LamProcess process, PetscBool limit)
 {
-  const PetscBool contact = (PetscBool)(process->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(process->scene->micro.interface);
 
   if (!limit) return process->trouble;
   return contact && LamResponderGetCounters(process->responder).interpolated

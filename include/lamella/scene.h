@@ -8,6 +8,7 @@
 
 #include <petscsys.h>
 #include <stdio.h>
+#include <lamella/cohesive.h>
 #include <lamella/kinetics.h>
 #include <lamella/place_field.h>
 #include <lamella/wall.h>
@@ -21,7 +22,8 @@ LAM_C_BEGIN
 
 #define LAM_INTERFACE_LAWS(X)                                                                                          \
   X(LAM_INTERFACE_BONDED, "bonded")                                                                                    \
-  X(LAM_INTERFACE_CONTACT, "contact")
+  X(LAM_INTERFACE_CONTACT, "contact")                                                                                  \
+  X(LAM_INTERFACE_LAMELLA, "lamella")
 #define LAM_STRATEGIES(X)                                                                                              \
   X(LAM_TWO_STEP, "two_step") /* bonded tissue first, then release to contact */                                       \
   X(LAM_ONE_STEP, "one_step") /* contact from the affine state on */
@@ -34,6 +36,11 @@ LAM_C_BEGIN
   X(LAM_SIDES_FREE, "free")
 
 typedef enum { LAM_INTERFACE_LAWS(LAM_ENUM_ENTRY) LAM_INTERFACE_LAW_COUNT } LamInterfaceLawType;
+/* Whether the cells of tissue with this law can part: all laws but `bonded`. */
+static inline PetscBool LamCellsPart(LamInterfaceLawType law)
+{
+  return (PetscBool)(law != LAM_INTERFACE_BONDED);
+}
 typedef enum { LAM_STRATEGIES(LAM_ENUM_ENTRY) LAM_STRATEGY_COUNT } LamStrategy;
 typedef enum { LAM_SHARPNESSES(LAM_ENUM_ENTRY) LAM_SHARPNESS_COUNT } LamSharpness;
 typedef enum { LAM_PATCH_SIDES(LAM_ENUM_ENTRY) LAM_PATCH_SIDES_COUNT } LamPatchSides;
@@ -50,6 +57,8 @@ typedef struct {
   PetscReal wall_thickness;   /* in apothems */
   LamWall wall;               /* moduli in the C1 + C2 of the tissue */
   PetscReal turgor, cohesion; /* factors of the load's values; between two cells the smaller cohesion acts */
+  PetscReal lamella_strength, lamella_energy; /* factors of the lamella's; between two cells the smaller ones act */
+  PetscInt cluster;                           /* of cells that hold together (LamLamella, between) */
 } LamCell;
 
 /* A tissue microstructure, nondimensional. It determines the map (F, turgor, cohesion) -> response. */
@@ -65,6 +74,7 @@ typedef struct {
   LamInterfaceLawType interface;
   PetscReal clearance; /* gap between facing walls at rest, in apothems: each cell is smaller than its lattice site by
                           half of it */
+  LamLamella lamella;  /* of law `lamella` */
   LamSharpness sharpness;  /* law of contact */
   PetscReal contact_width; /* of the smooth law, in apothems; 0: LAM_USUAL_WIDTH */
   PetscInt along, through; /* elements per face and through one wall; 0: chosen by the planner */
@@ -106,7 +116,7 @@ static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscIn
 /* Apothem of a cell's outer walls; 1 is half the distance between the centres of neighbours. */
 static inline PetscReal LamOuterApothem(const LamMicrostructure *micro)
 {
-  return micro->interface == LAM_INTERFACE_CONTACT ? 1.0 - 0.5 * micro->clearance : 1.0;
+  return LamCellsPart(micro->interface) ? 1.0 - 0.5 * micro->clearance : 1.0;
 }
 
 /* Units of the nondimensional numbers: multiply by these to obtain SI. */

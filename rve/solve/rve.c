@@ -103,7 +103,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(PetscMalloc1(cells, &rve->law));
   PetscCall(SetUpWalls(rve));
   PetscCall(LamGeometryCreate(rve));
-  if (rve->micro.interface == LAM_INTERFACE_CONTACT) {
+  if (LamCellsPart(rve->micro.interface)) {
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
     PetscCall(LamSmoothCreate(rve));
   } else {

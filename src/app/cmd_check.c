@@ -120,7 +120,7 @@ static PetscErrorCode PrintObject(const Check *check)
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
                                   (json_int_t)micro->cells[1], "sides", LamPatchSidesNames[micro->sides]));
   if (plan->spread.kinds) json_object_set_new(o, "variation", Spread(&plan->spread, MPa));
-  if (micro->interface == LAM_INTERFACE_CONTACT) {
+  if (LamCellsPart(micro->interface)) {
     json_object_set_new(o, "cohesion", LamJSONReal(scene->cohesion * MPa));
     json_object_set_new(o, "clearance", LamJSONReal(micro->clearance));
     json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
@@ -258,8 +258,7 @@ static void PrintRegions(const Check *check)
     printf("  %-10s wall %.4g of the apothem (%.4g um), C1 + C2 %.4g MPa, turgor %.4g MPa", region->name,
            (double)region->micro.wall_thickness, (double)(1e6 * region->scales.length), (double)MPa,
            (double)(region->turgor * MPa));
-    if (region->micro.interface == LAM_INTERFACE_CONTACT)
-      printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
+    if (LamCellsPart(region->micro.interface)) printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
     printf("; %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " unknowns\n", plan->micro.along,
            plan->micro.through, plan->unknowns);
   }

@@ -73,7 +73,7 @@ static PetscErrorCode PrintPointObject(const LamProcessStudy *study, const LamPr
 
 static void PrintPointHeader(const LamProcessStudy *study, const char unit[])
 {
-  const PetscBool contact = (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(study->scene->micro.interface);
 
   printf("%10s %8s %9s %9s %9s %9s %9s %9s %9s", "time", "temp.", "turgor", "osmotic", "lamella", "walls", "firmness",
          "F11", "F22");
@@ -87,7 +87,7 @@ static void PrintPointHeader(const LamProcessStudy *study, const char unit[])
 static void PrintPointRow(const LamProcessStudy *study, const LamProcessState *state)
 {
   const PetscReal MPa = study->scene->scales.stress * 1e-6;
-  const PetscBool contact = (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(study->scene->micro.interface);
   const LamResponse *r = &state->response;
   PetscReal seconds;
   const char *unit = LamTimeUnit(study->scene->process.duration, &seconds);

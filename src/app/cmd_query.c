@@ -117,7 +117,7 @@ static void PrintDefaults(const Query *q)
   printf("accuracy %.3g %%%s", (double)(100 * Accuracy(q)), q->accuracy > 0 ? "" : ", the scene's");
   if (!q->turgor)
     printf("; turgor where not given %.4g MPa, %s", (double)(q->defaults.turgor * MPa), q->from.turgor_origin);
-  if (!q->cohesion && q->from.micro.interface == LAM_INTERFACE_CONTACT)
+  if (!q->cohesion && LamCellsPart(q->from.micro.interface))
     printf("; cohesion %.4g MPa, %s", (double)(q->defaults.cohesion * MPa), q->from.cohesion_origin);
   putchar('\n');
 }

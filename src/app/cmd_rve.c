@@ -163,7 +163,7 @@ static PetscBool GlobalFits(const Command *command, int *exit_status)
   const LamRVERun *run = &command->run;
 
   if (!run->global) return PETSC_TRUE;
-  if (run->scene->micro.interface != LAM_INTERFACE_CONTACT)
+  if (!LamCellsPart(run->scene->micro.interface))
     return LamUsageError("rve", exit_status, "--global: %s is bonded; leave it out, or write law: contact",
                          command->scene_path);
   if (run->second_mesh || run->find_failure)
@@ -191,7 +191,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     PetscCall(LamRVERunDestroy(run));
     PetscFunctionReturn(0);
   }
-  if (!run->second_mesh || run->scene->micro.interface == LAM_INTERFACE_CONTACT ||
+  if (!run->second_mesh || LamCellsPart(run->scene->micro.interface) ||
       LamUsageError("rve", exit_status,
                     "%s: the cells of %s are bonded and never separate; leave it out, or write law: contact",
                     run->find_onset ? "--onset" : "--second-mesh", command->scene_path)) {

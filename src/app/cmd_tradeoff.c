@@ -22,7 +22,7 @@ static const char *MeshWords(const LamMicrostructure *micro, char text[64])
 
 static const char *OpeningName(const LamTradeoff *t)
 {
-  return t->scene->micro.interface == LAM_INTERFACE_CONTACT ? "opening" : "lumen";
+  return LamCellsPart(t->scene->micro.interface) ? "opening" : "lumen";
 }
 
 static PetscBool ComparesStates(const LamTradeoff *t)

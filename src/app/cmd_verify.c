@@ -191,7 +191,7 @@ static void PrintQuestions(const LamAudit *a, PetscReal seconds, PetscMPIInt ran
 
   printf("%-16s principal logarithmic strains %.4g to %.4g, turgor %.4g to %.4g MPa", "states",
          (double)a->box.strain[0], (double)a->box.strain[1], (double)(turgor[0] * MPa), (double)(turgor[1] * MPa));
-  if (a->from->micro.interface == LAM_INTERFACE_CONTACT) printf(", cohesion %.4g MPa", (double)(a->box.cohesion * MPa));
+  if (LamCellsPart(a->from->micro.interface)) printf(", cohesion %.4g MPa", (double)(a->box.cohesion * MPa));
   printf("; %s\n", a->box.origin);
   printf("%-16s %" PetscInt_FMT ", seed %" PetscInt_FMT "\n", "asked", a->asked, a->seed);
   printf("%-16s %" PetscInt_FMT " (%.1f %%)\n", "answered", a->answered,

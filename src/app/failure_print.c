@@ -138,7 +138,7 @@ static const char *WhyNotJudged(LamCriterion criterion, LamInterfaceLawType inte
 {
   if (criterion == LAM_CRITERION_CONTACT) return "the cells are bonded";
   if (criterion == LAM_CRITERION_WALL) return "the scene has no strength.wall";
-  if (interface == LAM_INTERFACE_CONTACT) return "cells in contact part by their cohesion";
+  if (LamCellsPart(interface)) return "cells in contact part by their cohesion";
   return criterion == LAM_CRITERION_LAMELLA_NORMAL ? "the scene has no strength.lamella_normal"
                                                    : "the scene has no strength.lamella_shear";
 }

@@ -93,8 +93,7 @@ PetscErrorCode LamPrintJSON(json_t *object)
 
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource source)
 {
-  const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT),
-                  solve = (PetscBool)(source == LAM_SOURCE_SOLVE);
+  const PetscBool contact = LamCellsPart(interface), solve = (PetscBool)(source == LAM_SOURCE_SOLVE);
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
@@ -204,7 +203,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   for (int k = 0; k < 4; k++) LamPrintColumn(10, 3, 'e', LamWithoutNoise(response->P[in_plane[k]]) * MPa);
   LamPrintColumn(6, 4, 'f', response->lumen_fraction);
   LamPrintColumn(10, 3, 'e', response->max_traction * MPa);
-  if (interface == LAM_INTERFACE_CONTACT) PrintContact(response, MPa);
+  if (LamCellsPart(interface)) PrintContact(response, MPa);
   PrintTail(response);
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)

@@ -342,7 +342,7 @@ static LamRect Cell(PetscInt k, double top)
 
 static Panel PanelOf(const LamTradeoff *t, const Groups *groups, LamErrorKind kind)
 {
-  const PetscBool contact = (PetscBool)(t->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(t->scene->micro.interface);
   const char *const labels[] = {[LAM_ERROR_P] = "error of $P$",
                                 [LAM_ERROR_TANGENT] = "error of the tangent",
                                 [LAM_ERROR_OPENING] =

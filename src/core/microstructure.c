@@ -10,6 +10,7 @@
 #include <string.h>
 
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
+const char *const LamSofteningNames[] = {LAM_SOFTENINGS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamSharpnessNames[] = {LAM_SHARPNESSES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
@@ -49,7 +50,7 @@ static void DescribeCells(const LamMicrostructure *micro, FILE *out)
     fprintf(out, "%s{\"wall_thickness\": %.12g, ", c ? ", " : "", Clean(cell->wall_thickness));
     DescribeWall(&cell->wall, out);
     fprintf(out, ", \"turgor\": %.12g", Clean(cell->turgor));
-    if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"cohesion\": %.12g", Clean(cell->cohesion));
+    if (LamCellsPart(micro->interface)) fprintf(out, ", \"cohesion\": %.12g", Clean(cell->cohesion));
     fprintf(out, "}");
   }
 }
@@ -64,8 +65,8 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   fprintf(out, "}, ");
   DescribeWall(&micro->wall, out);
   fprintf(out, ", \"interface\": {\"law\": \"%s\"", LamInterfaceLawNames[micro->interface]);
-  if (micro->interface == LAM_INTERFACE_CONTACT) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
-  if (micro->interface == LAM_INTERFACE_CONTACT && micro->sharpness == LAM_SHARPNESS_SMOOTH)
+  if (LamCellsPart(micro->interface)) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
+  if (LamCellsPart(micro->interface) && micro->sharpness == LAM_SHARPNESS_SMOOTH)
     fprintf(out, ", \"width\": %.12g", Clean(micro->contact_width));
   fprintf(out, "}");
   if (micro->cell) {
@@ -175,7 +176,7 @@ static PetscBool ParseCell(json_t *object, LamCell *cell)
 {
   json_t *wall;
 
-  *cell = (LamCell){.cohesion = 1.0};
+  *cell = (LamCell){.cohesion = 1.0, .lamella_strength = 1.0, .lamella_energy = 1.0};
   if (json_unpack(object, "{s:F, s:o, s:F, s?F}", "wall_thickness", &cell->wall_thickness, "wall", &wall, "turgor",
                   &cell->turgor, "cohesion", &cell->cohesion))
     return PETSC_FALSE;

@@ -317,7 +317,7 @@ static void RespondFromBlend(const LamScatterSearch *search, PetscReal reach, La
   Fill(search, &search->blends, PETSC_FALSE, &blend, sums.A3333 / sums.W, r);
   spread =
       LamStressErrorOfSize(LamStressScaleOf(&search->db->header.micro), Spread(search, &sums, &blend, r->load.F), r->P);
-  if (search->db->header.micro.interface == LAM_INTERFACE_CONTACT) spread *= CONTACT_DOUBT;
+  if (LamCellsPart(search->db->header.micro.interface)) spread *= CONTACT_DOUBT;
   r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
 }
 

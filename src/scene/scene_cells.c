@@ -76,7 +76,12 @@ typedef struct {
 
 static LamCell OwnCell(const LamMicrostructure *micro)
 {
-  return (LamCell){.wall_thickness = micro->wall_thickness, .wall = micro->wall, .turgor = 1.0, .cohesion = 1.0};
+  return (LamCell){.wall_thickness = micro->wall_thickness,
+                   .wall = micro->wall,
+                   .turgor = 1.0,
+                   .cohesion = 1.0,
+                   .lamella_strength = 1.0,
+                   .lamella_energy = 1.0};
 }
 
 /* ---- kinds of cells ---- */
@@ -339,7 +344,7 @@ static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
 {
   /* in a patch of two rows a grip holds every cell */
-  return (PetscBool)(micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT && micro->sides == LAM_SIDES_FREE &&
+  return (PetscBool)(micro->is_patch && LamCellsPart(micro->interface) && micro->sides == LAM_SIDES_FREE &&
                      micro->cells[1] > 2);
 }
 

@@ -216,7 +216,7 @@ static PetscErrorCode BuildInflated(const LamNode *entry, LamScene *scene)
                   "missing, and rve.turgor is, too: nothing inflates the tissue; write turgor: 0.1 MPa");
   scene->loads[0] = (LamLoad){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   PetscCall(BuildPressures(entry, scene, &scene->loads[0]));
-  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_CONTACT || scene->loads[0].cohesion > 0.0,
+  LamSceneCheckName(!LamCellsPart(scene->micro.interface) || scene->loads[0].cohesion > 0.0,
                     LamNodeFind(entry, "inflate"),
                     "free tissue of law: contact is held together by the lamella alone, and there is no cohesion; give "
                     "interface.cohesion > 0, or leave inflate out");

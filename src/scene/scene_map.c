@@ -182,7 +182,7 @@ static PetscErrorCode CheckAxis(const AxisNodes *nodes, const LamScene *scene, c
     break;
   case LAM_MAP_LAMELLA_NORMAL:
   case LAM_MAP_LAMELLA_SHEAR:
-    LamSceneCheck(micro->interface != LAM_INTERFACE_CONTACT, nodes->quantity,
+    LamSceneCheck(!LamCellsPart(micro->interface), nodes->quantity,
                   "law: contact has a cohesion instead; write cohesion, or interface: {law: bonded}");
     break;
   default: /* wall quantities, or without conditions */

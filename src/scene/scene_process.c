@@ -349,11 +349,11 @@ static PetscErrorCode CheckChanging(const LamNode *of, LamChanging changing, con
 {
   const PetscBool of_water = (PetscBool)(changing == LAM_CHANGING_SOLUTES || changing == LAM_CHANGING_PERMEABILITY ||
                                          changing == LAM_CHANGING_REFLECTION);
-  PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
+  PetscBool contact = LamCellsPart(scene->micro.interface);
 
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < scene->region_count; r++)
-    if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
+    if (LamCellsPart(scene->regions[r].micro.interface)) contact = PETSC_TRUE;
   LamSceneCheck(!of_water || scene->process.has_water, of,
                 "belongs to process.water, which is missing; write that block, or leave it out");
   LamSceneCheck(!LamSceneLacksChanging(scene, changing), of,

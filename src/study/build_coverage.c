@@ -103,7 +103,7 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
                                   PetscReal accuracy, PetscInt enough, const LamRound *under_way,
                                   LamMeanwhile meanwhile, LamCoverage *coverage)
 {
-  const PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(scene->micro.interface);
   PetscReal *errors, error;
   PetscInt *states, n = 0;
   LamTable table;

@@ -148,7 +148,7 @@ static int CompareRanked(const void *a, const void *b)
 /* chain[n]: cost of the longest chain of missing nodes that starts at the node. Bonded nodes have no chains. */
 static PetscErrorCode PredictChains(LamRounds *rounds, const LamRound *round, PetscReal chain[])
 {
-  const PetscBool chained = (PetscBool)(rounds->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool chained = LamCellsPart(rounds->scene->micro.interface);
   PetscReal *cost;
 
   PetscFunctionBeginUser;

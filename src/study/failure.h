@@ -102,7 +102,7 @@ PetscErrorCode LamFailureDestroy(LamFailure *failure);
 static inline PetscBool LamCriterionIsJudged(LamCriterion criterion, LamInterfaceLawType interface,
                                              const LamStrength *strength)
 {
-  const PetscBool contact = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(interface);
 
   switch (criterion) {
   case LAM_CRITERION_LAMELLA_NORMAL:

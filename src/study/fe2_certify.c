@@ -131,7 +131,7 @@ PetscErrorCode LamFE2Certify(LamFE2Run *run)
   for (PetscInt t = 0; t < run->tissues.count; t++) {
     LamFE2Tissue *tissue = &run->tissues.tissues[t];
 
-    if (tissue->scene.micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
+    if (LamCellsPart(tissue->scene.micro.interface)) contact = PETSC_TRUE;
     if (!tissue->rve) PetscCall(LamFE2CreateSolver(run, tissue));
     if (run->certify == LAM_CERTIFY_ALL)
       PetscCall(LamFE2CreateDirect(run, tissue, &tissue->reference));

@@ -218,8 +218,7 @@ PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
 static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
 {
   const LamScene *scene = &tissue->scene;
-  const PetscBool contact =
-      (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT && scene->micro.along >= EVEN_ALONG);
+  const PetscBool contact = (PetscBool)(LamCellsPart(scene->micro.interface) && scene->micro.along >= EVEN_ALONG);
 
   if (scene->response.accuracy > 0) return scene->response.accuracy;
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;

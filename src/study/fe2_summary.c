@@ -25,12 +25,12 @@ static PetscBool IsJudged(const LamSummary *summary, LamSummaryMode mode)
 
 PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary)
 {
-  PetscBool contact = (PetscBool)(scene->micro.interface == LAM_INTERFACE_CONTACT);
+  PetscBool contact = LamCellsPart(scene->micro.interface);
   const LamStrength *strength = &scene->strength;
 
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < scene->region_count; r++)
-    if (scene->regions[r].micro.interface == LAM_INTERFACE_CONTACT) contact = PETSC_TRUE;
+    if (LamCellsPart(scene->regions[r].micro.interface)) contact = PETSC_TRUE;
   *summary =
       (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1, .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   summary->onset[LAM_SUMMARY_NORMAL].judged = (PetscBool)isfinite(strength->lamella_normal);

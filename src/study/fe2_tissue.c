@@ -207,7 +207,7 @@ static PetscReal RoundOutwards(PetscReal value, PetscBool up)
 /* Smallest number of levels with an error of the blend of at most a quarter of `accuracy`. */
 static PetscInt LevelCount(PetscReal least, PetscReal most, LamInterfaceLawType interface, PetscReal accuracy)
 {
-  const BlendError *errors = interface == LAM_INTERFACE_CONTACT ? ContactErrors : BondedErrors;
+  const BlendError *errors = LamCellsPart(interface) ? ContactErrors : BondedErrors;
   PetscInt count = 2;
 
   for (; count < MOST_LEVELS; count++) {
@@ -382,7 +382,7 @@ static PetscErrorCode SetLoads(MPI_Comm comm, LamFE2Tissues *tissues)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3 * (PetscMPIInt)tissues->count, MPIU_REAL, MPIU_MAX, comm));
   for (PetscInt t = 0; t < tissues->count; t++) {
     LamFE2Tissue *tissue = &tissues->tissues[t];
-    const PetscBool contact = (PetscBool)(tissue->scene.micro.interface == LAM_INTERFACE_CONTACT);
+    const PetscBool contact = LamCellsPart(tissue->scene.micro.interface);
 
     /* tables of contact tissue extend downwards from the largest suction; nodes of bonded tissue have one turgor, and
        derivatives in it */

@@ -342,7 +342,7 @@ static PetscErrorCode FollowOwn(const LamScene *own, PetscInt number, PetscBool 
   PetscCall(PetscMalloc1(path.count, &responses));
   program =
       (LamFailureProgram){own->micro.interface, &own->strength, path.count, path.loads, path.controls, PETSC_TRUE};
-  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, own, own->micro.interface == LAM_INTERFACE_CONTACT ? 2 : 1, &meshes));
+  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, own, LamCellsPart(own->micro.interface) ? 2 : 1, &meshes));
   PetscCall(LamMeshesSetInterrupt(&meshes, interrupt, ctx));
   PetscCall(LamMeshesSeal(&meshes, own, &own->loads[0]));
   PetscCall(LamFailureCreate(&meshes, &program, &failure));

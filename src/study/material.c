@@ -133,7 +133,7 @@ static void FillInfo(const LamMaterial m, const LamResponse *r, LamMaterialInfo 
   *info = (LamMaterialInfo){.status = (int)r->status,
                             .trusted = m->rve ? 1 : (int)r->indicators_trusted,
                             .error_estimate = r->error_estimate,
-                            .debonded_fraction = m->interface == LAM_INTERFACE_CONTACT ? r->debonded_fraction : NAN,
+                            .debonded_fraction = LamCellsPart(m->interface) ? r->debonded_fraction : NAN,
                             .max_gap = r->max_gap * m->scales.length,
                             .turgor = r->turgor_mean * m->scales.stress};
   (void)PetscStrncpy(info->reason, r->reason, sizeof(info->reason));

@@ -72,7 +72,7 @@ PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal a
 PetscErrorCode LamChooseMesh(LamScene *scene, LamMeshTrial *trial)
 {
   LamMicrostructure *micro = &scene->micro;
-  const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
+  const PetscBool uneven = (PetscBool)(scene->has_macro && LamCellsPart(micro->interface));
   LamMeshTrial choice = {.error = NAN};
 
   PetscFunctionBeginUser;

@@ -33,35 +33,35 @@ typedef struct {
 } List;
 
 static const List Lists[] = {
-    [LAM_INTERFACE_BONDED] = {0.9,
-                              {{12, 2}, {20, 4}, {36, 8}},
-                              16,
-                              {{4, 1},
-                               {6, 1},
-                               {8, 1},
-                               {10, 1},
-                               {12, 1},
-                               {8, 2},
-                               {16, 1},
-                               {12, 2},
-                               {16, 2},
-                               {12, 3},
-                               {20, 2},
-                               {12, 4},
-                               {16, 4},
-                               {20, 4},
-                               {28, 4},
-                               {28, 6}}},
-    [LAM_INTERFACE_CONTACT] =
-        {0.6,
-         {{12, 2}, {20, 4}, {32, 6}},
-         11,
-         {{4, 1}, {6, 1}, {8, 1}, {6, 2}, {8, 2}, {10, 2}, {12, 2}, {16, 2}, {16, 3}, {20, 4}, {28, 4}}},
+    /* by whether the cells part */
+    [PETSC_FALSE] = {0.9,
+                     {{12, 2}, {20, 4}, {36, 8}},
+                     16,
+                     {{4, 1},
+                      {6, 1},
+                      {8, 1},
+                      {10, 1},
+                      {12, 1},
+                      {8, 2},
+                      {16, 1},
+                      {12, 2},
+                      {16, 2},
+                      {12, 3},
+                      {20, 2},
+                      {12, 4},
+                      {16, 4},
+                      {20, 4},
+                      {28, 4},
+                      {28, 6}}},
+    [PETSC_TRUE] = {0.6,
+                    {{12, 2}, {20, 4}, {32, 6}},
+                    11,
+                    {{4, 1}, {6, 1}, {8, 1}, {6, 2}, {8, 2}, {10, 2}, {12, 2}, {16, 2}, {16, 3}, {20, 4}, {28, 4}}},
 };
 
 PetscBool LamListedMesh(LamInterfaceLawType interface, PetscInt k, LamMeshTrial *mesh)
 {
-  const List *list = &Lists[interface];
+  const List *list = &Lists[LamCellsPart(interface)];
 
   if (k >= list->count) return PETSC_FALSE;
   mesh->along = list->meshes[k].along;
@@ -103,7 +103,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
   micro.is_patch = PETSC_FALSE;
   micro.along = mesh.along;
   micro.through = mesh.through;
-  micro.grading = Lists[micro.interface].grading;
+  micro.grading = Lists[LamCellsPart(micro.interface)].grading;
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &c->rve));
   PetscCall(LamRVESetMicrostructure(c->rve, &micro));
   PetscCall(LamRVESetStrategy(c->rve, scene->strategy));
@@ -258,7 +258,7 @@ static PetscErrorCode ErrorOf(const LamScene *scene, PetscInt number, Mesh mesh,
 static PetscErrorCode Climb(const LamScene *scene, PetscInt cell, const Truth *truth, Mesh reference, PetscInt *at,
                             PetscReal *error)
 {
-  const List *list = &Lists[scene->micro.interface];
+  const List *list = &Lists[LamCellsPart(scene->micro.interface)];
 
   PetscFunctionBeginUser;
   for (;;) {
@@ -272,7 +272,7 @@ static PetscErrorCode Climb(const LamScene *scene, PetscInt cell, const Truth *t
 
 static PetscErrorCode TryCell(const LamScene *scene, PetscInt cell, PetscInt *at, LamMeshTrial *trial)
 {
-  const List *list = &Lists[scene->micro.interface];
+  const List *list = &Lists[LamCellsPart(scene->micro.interface)];
   PetscReal error = PETSC_INFINITY;
   Truth truth = {.loads.n = 1};
   Cell path;
@@ -298,7 +298,7 @@ static PetscErrorCode TryCell(const LamScene *scene, PetscInt cell, PetscInt *at
 PetscErrorCode LamTryMeshes(const LamScene *scene, LamMeshTrial *trial)
 {
   const LamMicrostructure *micro = &scene->micro;
-  const List *list = &Lists[micro->interface];
+  const List *list = &Lists[LamCellsPart(micro->interface)];
   const PetscInt count = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
   PetscInt thick = 0, thin = 0, mesh = 0;
 

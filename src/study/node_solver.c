@@ -159,7 +159,7 @@ PetscErrorCode LamNodeChainCreate(LamRVE rve, LamInterfaceLawType interface, Lam
   PetscCall(PetscNew(&c));
   c->rve = rve;
   c->grid = grid;
-  c->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+  c->warm = LamCellsPart(interface);
   PetscCall(LamRVEGetUnknowns(rve, &unknowns));
   /* positions of the tissue and of the bonded tissue from which it starts */
   c->most = (PetscInt)(memory / (sizeof(Node) + 2 * sizeof(PetscReal) * (size_t)unknowns)) + 1;

@@ -262,7 +262,7 @@ PetscErrorCode LamNodeWorkCreate(MPI_Comm comm, LamRVE rve, LamInterfaceLawType 
   PetscCall(PetscNew(&w));
   w->rve = rve;
   w->grid = grid;
-  w->warm = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
+  w->warm = LamCellsPart(interface);
   if (callbacks) w->callbacks = *callbacks;
   TAILQ_INIT(&w->states);
   PetscCall(LamRVEStateCreate(rve, &w->state));

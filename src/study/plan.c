@@ -38,7 +38,7 @@ static Outer CountOuter(const LamMicrostructure *micro)
   const PetscInt cells = micro->cells[0] * micro->cells[1];
   Outer outer = {3 * cells, 2 * cells, 3 * cells}; /* of bonded cells in a period; a corner belongs to three */
 
-  if (!micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT) outer.faces = outer.corners = LAM_FACES * cells;
+  if (!micro->is_patch && LamCellsPart(micro->interface)) outer.faces = outer.corners = LAM_FACES * cells;
   if (!micro->is_patch) return outer;
   outer = (Outer){0, 0, 0};
   for (PetscInt cell = 0; cell < cells; cell++)
@@ -53,7 +53,7 @@ static PetscInt CountUnknowns(const LamMicrostructure *micro)
   const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
   const Outer outer = CountOuter(micro);
   const PetscInt nodes = cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners;
-  const PetscInt multipliers = micro->interface == LAM_INTERFACE_CONTACT ? outer.pairs * (2 * along + 1) : 0;
+  const PetscInt multipliers = LamCellsPart(micro->interface) ? outer.pairs * (2 * along + 1) : 0;
 
   return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;
 }

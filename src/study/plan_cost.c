@@ -36,7 +36,7 @@ PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, LamCost *
   const PetscReal n = (PetscReal)plan->unknowns;
   LamMicrostructure cell = plan->micro;
   const PetscReal cells = (PetscReal)cell.cells[0] * (PetscReal)cell.cells[1];
-  const PetscBool contact = (PetscBool)(cell.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(cell.interface);
   PetscReal iteration;
   PetscInt unknowns;
 

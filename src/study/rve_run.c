@@ -40,7 +40,7 @@ static LamWanted Wanted(const LamRVERun *run)
 
 PetscErrorCode LamRVERunPrepare(LamRVERun *run)
 {
-  const PetscBool contact = (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(run->scene->micro.interface);
   LamPlan plan;
 
   PetscFunctionBeginUser;
@@ -92,10 +92,11 @@ static void ReportDoubts(const LamRVERun *run)
                   (int)run->inaccurate, (int)run->solved, (double)(100 * run->scene->accuracy),
                   (int)run->scene->micro.along, (int)run->scene->micro.through);
   if (run->unknown)
-    LamReportNote(&run->reporter, "the error of %d of %d states is not known: %s", (int)run->unknown, (int)run->solved,
-                  run->scene->sealed
-                      ? "it is not estimated for sealed cells"
-                      : "a finer mesh has no state near theirs; it has another branch there, and these depend on the mesh");
+    LamReportNote(
+        &run->reporter, "the error of %d of %d states is not known: %s", (int)run->unknown, (int)run->solved,
+        run->scene->sealed
+            ? "it is not estimated for sealed cells"
+            : "a finer mesh has no state near theirs; it has another branch there, and these depend on the mesh");
   if (run->kinked)
     LamReportNote(
         &run->reporter,

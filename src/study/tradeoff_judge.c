@@ -52,7 +52,7 @@ PetscReal LamErrorOf(LamErrorKind kind, const LamMicrostructure *micro, const La
   case LAM_ERROR_TANGENT:
     return RelativeDifference(81, answer->tangent, reference->tangent);
   case LAM_ERROR_OPENING:
-    if (micro->interface == LAM_INTERFACE_CONTACT) return fabs(answer->opening_fraction - reference->opening_fraction);
+    if (LamCellsPart(micro->interface)) return fabs(answer->opening_fraction - reference->opening_fraction);
     return fabs(answer->lumen_fraction - reference->lumen_fraction);
   default:
     return NAN;

@@ -75,7 +75,7 @@ static PetscBool Floats(const LamResponse *r)
    arbitrarily, and no gap determines their width. */
 static PetscBool HasOneCell(const LamMicrostructure *micro)
 {
-  return (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT && !micro->is_patch && !micro->cell &&
+  return (PetscBool)(LamCellsPart(micro->interface) && !micro->is_patch && !micro->cell &&
                      micro->cells[0] * micro->cells[1] == 1);
 }
 

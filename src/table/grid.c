@@ -211,7 +211,7 @@ static void SetTissue(const LamMicrostructure *micro, LamGrid g)
 
   for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
     softest = PetscMin(softest, micro->cell[c].wall.bulk_modulus);
-  g->contact = (PetscBool)(micro->interface == LAM_INTERFACE_CONTACT);
+  g->contact = LamCellsPart(micro->interface);
   /* all three lattice directions are equivalent if the period has equal cell counts and cells do not differ */
   g->symmetric = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
   g->axes = LamLatticeAxesOf(micro->orientation);

@@ -40,8 +40,12 @@ static LamMicrostructure Uneven(LamCell cell[6], LamInterfaceLawType interface)
   micro.interface = interface;
   micro.is_patch = (PetscBool)(interface == LAM_INTERFACE_CONTACT);
   micro.sides = LAM_SIDES_FREE;
-  for (int c = 0; c < 6; c++) cell[c] = (LamCell){0.15, micro.wall, 1, 1};
-  cell[2] = (LamCell){0.1, {.law = LAM_WALL_MOONEY_RIVLIN, .C1 = 0.5, .C2 = 0.1, .bulk_modulus = 500}, 0.25, 0.5};
+  for (int c = 0; c < 6; c++)
+    cell[c] = (LamCell){.wall_thickness = 0.15, .wall = micro.wall, .turgor = 1, .cohesion = 1};
+  cell[2] = (LamCell){.wall_thickness = 0.1,
+                      .wall = {.law = LAM_WALL_MOONEY_RIVLIN, .C1 = 0.5, .C2 = 0.1, .bulk_modulus = 500},
+                      .turgor = 0.25,
+                      .cohesion = 0.5};
   if (interface == LAM_INTERFACE_BONDED) cell[2].cohesion = 1;
   micro.cell = cell;
   return micro;

@@ -36,7 +36,9 @@ static void FindLargestTurgor(double turgor, double between[2])
   micro.cells[0] = micro.cells[1] = 2;
   micro.wall = (LamWall){.law = micro.wall.law, .C1 = 0.9, .C2 = 0.1, .bulk_modulus = 1000.0};
   micro.wall_thickness = 0.2;
-  for (int c = 0; c < 4; c++) cells[c] = (LamCell){micro.wall_thickness, micro.wall, c ? 1.0 : 1.3, 1.0};
+  for (int c = 0; c < 4; c++)
+    cells[c] =
+        (LamCell){.wall_thickness = micro.wall_thickness, .wall = micro.wall, .turgor = c ? 1.0 : 1.3, .cohesion = 1.0};
   micro.cell = cells;
   r = SolveTissue(&micro, PlaneLoad(1, 0, 0, 1, turgor));
   assert_false(LamResponseHasFields(&r));

@@ -43,9 +43,8 @@ PetscErrorCode LamCellsRead(const LamCells *cells, PetscInt k, LamTissue *tissue
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(name, sizeof(name), "/fields/%" PetscInt64_FMT, of->keys[state]));
-  PetscCall(LamTissueRead(cells->path, "/mesh", name, cells->field,
-                          (PetscBool)(of->micro.interface == LAM_INTERFACE_CONTACT), of->records[state].load.F,
-                          tissue));
+  PetscCall(LamTissueRead(cells->path, "/mesh", name, cells->field, LamCellsPart(of->micro.interface),
+                          of->records[state].load.F, tissue));
   PetscFunctionReturn(0);
 }
 
@@ -73,7 +72,7 @@ PetscErrorCode LamCellsShare(LamCells *cells)
   }
   PetscCall(LamColourRangeFind(2 * cells->count, ends, &frame->range));
   PetscCall(PetscFree(ends));
-  LamBoxWiden(frame->box, cells->of->micro.interface == LAM_INTERFACE_CONTACT ? LAM_CONTACT_MARGIN : LAM_MARGIN);
+  LamBoxWiden(frame->box, LamCellsPart(cells->of->micro.interface) ? LAM_CONTACT_MARGIN : LAM_MARGIN);
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +97,7 @@ void LamCellsKey(LamCanvas canvas, const LamView *view, const LamCells *cells)
   LamScaleBar(canvas, view, x, y, LAM_SCALE_BAR, 1e-6 / cells->of->scales.length, "µm");
   if (cells->is_periodic)
     LamCanvasText(canvas, x + view->frame.width, y, 1, 0, LAM_TICK_SIZE, "paler: periodic images");
-  if (cells->of->micro.interface == LAM_INTERFACE_CONTACT) LamInterfaceDrawKey(canvas, x, y + LAM_KEY_ROW, &interface);
+  if (LamCellsPart(cells->of->micro.interface)) LamInterfaceDrawKey(canvas, x, y + LAM_KEY_ROW, &interface);
 }
 
 PetscErrorCode LamCellsDestroy(LamCells *cells)

@@ -30,7 +30,7 @@ static PetscErrorCode Read(const char path[], Process *p)
 
 static PetscBool IsContact(const Process *p)
 {
-  return (PetscBool)(p->of.micro.interface == LAM_INTERFACE_CONTACT);
+  return LamCellsPart(p->of.micro.interface);
 }
 
 /* ---- the four charts ---- */

@@ -53,7 +53,7 @@ static PetscErrorCode LoadRVE(const LamPlotRequest *request, RVEPicture *p)
   PetscCall(LamPlotGetRecords(p->database, &p->of));
   PetscCall(FindState(request, p));
   PetscCall(PetscSNPrintf(fields, sizeof fields, "/fields/%" PetscInt64_FMT, p->of.keys[p->index]));
-  PetscCall(LamTissueRead(path, "/mesh", fields, p->field, (PetscBool)(p->of.micro.interface == LAM_INTERFACE_CONTACT),
+  PetscCall(LamTissueRead(path, "/mesh", fields, p->field, LamCellsPart(p->of.micro.interface),
                           p->of.records[p->index].load.F, &p->tissue));
   PetscFunctionReturn(0);
 }

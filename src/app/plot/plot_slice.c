@@ -144,7 +144,7 @@ static const LamLoad *NearestLoad(const Nodes *nodes, PetscReal suction, PetscBo
 static PetscErrorCode ChooseLoad(const LamPlotRequest *request, const Nodes *nodes, LamSlice *s)
 {
   const PetscReal MPa = nodes->of.scales.stress * 1e-6;
-  const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(s->interface);
   const char *text = contact ? request->suction : request->turgor;
   const LamLoad *node;
   PetscReal range[2], suction;
@@ -265,7 +265,7 @@ static LamSliceVerdict VerdictOf(const LamSlice *s, const LamResponse *response)
 static void KeepResponse(const LamSlice *s, const LamScales *scales, const LamResponse *r, PetscInt at)
 {
   const PetscReal MPa = scales->stress * 1e-6;
-  const PetscReal share = s->interface == LAM_INTERFACE_CONTACT ? r->opening_fraction : r->lumen_fraction;
+  const PetscReal share = LamCellsPart(s->interface) ? r->opening_fraction : r->lumen_fraction;
 
   s->value[LAM_SLICE_POTENTIAL][at] = (r->energy + r->load.turgor * (r->lumen_fraction + r->opening_fraction)) * MPa;
   s->value[LAM_SLICE_STRESS][at] = LamStressNorm(r->P) * MPa;

@@ -171,7 +171,7 @@ typedef struct {
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const Page *page, LamSlicePanel panel)
 {
   const LamSlice *s = page->slice;
-  const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(s->interface);
   const struct {
     const char *label, *unit;
   } names[LAM_SLICE_PANEL_COUNT] = {{contact ? "potential $Φ$" : "energy of the walls $Φ$", "MPa"},
@@ -241,7 +241,7 @@ static void LegendOfNodes(LamCanvas canvas, LamPen *pen, const LamSlice *s, LamS
 {
   static const char *const labels[LAM_SLICE_NODE_KINDS] = {"node", "node on another branch", "node without an answer"};
   const PetscBool elsewhere =
-      (PetscBool)(s->interface == LAM_INTERFACE_CONTACT &&
+      (PetscBool)(LamCellsPart(s->interface) &&
                   fabs(s->turgor + s->cohesion - s->node_suction) > 1e-9 * fabs(s->node_suction));
   PetscBool occurs[MOST_LEVELS];
   const PetscInt found = FindLevels(s, kind, occurs);
@@ -307,7 +307,7 @@ static void DrawGlyph(LamCanvas canvas, double x, double y, const LamSlice *s)
 
 static void DrawHeader(LamCanvas canvas, const LamSlice *s)
 {
-  const PetscBool contact = (PetscBool)(s->interface == LAM_INTERFACE_CONTACT);
+  const PetscBool contact = LamCellsPart(s->interface);
   char title[256], load[32];
 
   LamFormatNumber(contact ? s->turgor + s->cohesion : s->turgor, load);
