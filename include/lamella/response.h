@@ -103,6 +103,13 @@ typedef struct {
   PetscInt percolating_directions; /* number of independent period directions, 0 to 2, that a group spans */
   PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
+  /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated
+   */
+  PetscReal stored;          /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
+  PetscReal dissipated;      /* spent in the lamella */
+  PetscReal released;        /* lost in jumps, i.e. to sound and heat; known with LAM_WANT_JUMPS in all states so far */
+  PetscReal broken_fraction; /* share of the lamella's fracture energy that is spent */
+  PetscReal broken_by_face[3];
   PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */
   PetscReal energy_released;    /* Psi that the jump has lost; NaN: no jump */
   PetscBool indicators_trusted; /* of a response from a database: quantities that are not derivatives of Psi vary little

@@ -62,6 +62,7 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
   PetscFunctionBeginUser;
   *energy = LoopEnergy(rve, load, y);
   if (rve->contact && !rve->contact->exact) *energy += LamSmoothEnergy(rve, load, y);
+  if (rve->layer) *energy += LamLayerEnergy(rve, load, y);
   *valid = PETSC_TRUE;
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2], element;
@@ -125,6 +126,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);
     LamGapAreaAddHessian(&rve->contact->gaps, suction, rve->linear->values);
   }
+  if (rve->layer) LamLayerAssemble(rve, load, y, energy, residual);
   rve->energy = *energy;
   PetscFunctionReturn(0);
 }

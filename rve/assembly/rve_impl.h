@@ -4,6 +4,7 @@
     assembly.c     sums over elements: energy, residual, tangent
     turgor.c       areas of lumens, pressures of sealed ones
     smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
+    lamella.c      the lamella between facing walls, which breaks
     contact.c      the exact law between facing walls: pairs, junctions, active set
     interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
@@ -19,6 +20,7 @@
 
 #include <lamella/rve.h>
 #include "contact.h"
+#include "lamella.h"
 #include "linear.h"
 #include "smooth_contact.h"
 
@@ -35,9 +37,13 @@ struct LamRVEState_s {
   PetscInt multipliers;
   PetscReal *lambda; /* [multipliers] */
   PetscInt faces;
-  PetscInt (*hats)[2];                /* [faces] junction status: first and last hat */
-  PetscBool solved;                   /* y and lambda are a solution, not the reference state */
-  PetscReal width;                    /* of the smooth law that it solves, apothems; 0: the exact law */
+  PetscInt (*hats)[2]; /* [faces] junction status: first and last hat */
+  PetscBool solved;    /* y and lambda are a solution, not the reference state */
+  PetscReal width;     /* of the smooth law that it solves, apothems; 0: the exact law */
+  /* law `lamella` only */
+  PetscInt points;
+  LamBondHistory *history;            /* [points] */
+  PetscReal spent, released;          /* energies dissipated and lost in jumps so far; not divided by V0 */
   PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
 };
 
@@ -80,6 +86,7 @@ struct LamRVE_s {
   LamLinear systems[LAM_SYSTEMS];
   LamSmooth *smooth;        /* the smooth law of contact; NULL for bonded tissue; owned */
   LamContact *contact;      /* the exact law; NULL for bonded tissue; owned */
+  LamLayer *layer;          /* the lamella of law `lamella`, else NULL; owned */
   LamRVE bonded;            /* two_step: the same tissue with bonded walls, created at its first use; owned */
   LamRVEState bonded_state; /* of `bonded`; owned */
   LamSeal seal;
@@ -208,6 +215,8 @@ static inline PetscBool LamIsExact(LamRVE rve)
 /* Forgets the walls that the last solve has met. */
 PetscErrorCode LamSmoothReset(LamRVE rve);
 LamTouchStrength LamTouchStrengthOf(LamRVE rve, const LamLoad *load, PetscInt a, PetscInt b);
+/* The law of a gap between walls. */
+void LamTouchLawOf(LamRVE rve, PetscReal gap, LamTouchLaw *law);
 /* Calls the visitor with the sums over all pairs of spans. */
 void LamSmoothVisit(LamRVE rve, const LamLoad *load, const PetscReal y[], LamTouchWanted wanted,
                     LamTouchBlockVisitor visitor, void *ctx);
@@ -215,6 +224,21 @@ PetscReal LamSmoothEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Zeroes residual and linear.values, and adds energy, residual and tangent. */
 PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                                  PetscReal residual[]);
+
+/* ---- lamella.c ---- */
+/* Finds the layer's entries in the matrix in use. */
+void LamLayerSetMatrix(LamRVE rve);
+/* Calls the visitor for all edges, with energy, forces and tangent of the step. */
+void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdgeVisitor visitor, void *ctx);
+/* And for all points, without them. */
+void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamBondVisitor visitor, void *ctx);
+PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
+/* Adds energy, residual and tangent. */
+void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);
+/* The history at the start of the step: that of a state. */
+void LamLayerTake(LamRVE rve, const LamRVEState state);
+/* Stores the history at the end of the step, at rve->y. */
+void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state);
 
 /* ---- smooth_pressures.c ---- */
 /* Forces of the smooth law at rve->y, per reference thickness. */

@@ -33,6 +33,19 @@ LamTouchStrength LamTouchStrengthOf(LamRVE rve, const LamLoad *load, PetscInt a,
       .s = s, .p = p * press / s, .g = g * press / s, .pp = p * p * second, .pg = p * g * second, .gg = g * g * second};
 }
 
+void LamTouchLawOf(LamRVE rve, PetscReal gap, LamTouchLaw *law)
+{
+  const PetscReal width = rve->smooth->width;
+
+  if (!rve->layer) {
+    LamTouchLawEvaluate(gap, width, law);
+    return;
+  }
+  LamTouchLawEvaluate(gap + width, width, law);
+  law->phi_width += law->d;
+  law->d_width += law->dd;
+}
+
 static void OpenBlock(Sum *sum, const LamTouching *touch)
 {
   const LamRVE rve = sum->rve;
@@ -106,7 +119,7 @@ static void AddTouch(void *ctx, const LamTouching *touch)
                     block->at != touch->at))
     CloseBlock(sum);
   if (!sum->open) OpenBlock(sum, touch);
-  LamTouchLawEvaluate(touch->gap.gap, sum->rve->smooth->width, &law);
+  LamTouchLawOf(sum->rve, touch->gap.gap, &law);
   block->energy += half * law.phi;
   if (sum->wanted == LAM_TOUCH_ENERGY) return;
   WeighNodes(&sum->rve->smooth->walls, touch, &weights);
@@ -212,6 +225,7 @@ static void Use(LamRVE rve, PetscInt system)
   if (rve->smooth->entries) ForgetEntries(rve->smooth);
   rve->linear = &rve->systems[system];
   LamGapAreaSetMatrix(rve->linear, &rve->contact->gaps);
+  if (rve->layer) LamLayerSetMatrix(rve);
   LamForgetTangent(rve);
 }
 

@@ -6,6 +6,8 @@
   over all points of walls near another wall (touching.h), phi the law of smooth.h. The strength s is the pressure that
   holds walls together, so that walls pressed by turgor and suction lie at a gap of zero:
     s^2 = (p + g)^2 + LAM_LEAST_STRENGTH^2,    p the mean turgor of the two cells, g their cohesion.
+  A lamella holds walls at a gap of zero without being pressed, and must not be torn by the law: with it the law is
+  phi(gap + width; width), which begins at a gap of zero.
 */
 #ifndef LAM_RVE_SMOOTH_CONTACT_H
 #define LAM_RVE_SMOOTH_CONTACT_H

@@ -42,7 +42,7 @@ static void AddPressure(void *ctx, const LamTouching *touch)
   PetscInt hat;
   LamTouchLaw law;
 
-  LamTouchLawEvaluate(touch->gap.gap, p->rve->smooth->width, &law);
+  LamTouchLawOf(p->rve, touch->gap.gap, &law);
   pressure = -law.d * strength.s * p->load->F[8];
   *(LamTouchIsLumen(touch) ? &p->forces->lumen
     : facing               ? &p->forces->facing

@@ -139,8 +139,7 @@ LAM_CLONES static Outcome Factor(LamLDL ldl, PetscInt most, PetscReal diagonal)
     LamFour *column[2] = {factor + start[j], factor + start[j + width - 1]}, sum[2] = {{0.0}, {0.0}};
 
     for (PetscInt t = 0; t < width; ++t) column[t][0][2] = column[t][0][1] = column[t][0][1] + column[t][0][2];
-    for (PetscInt s = ldl->first[p]; s < ldl->first[p + 1]; ++s)
-      SubtractSource(ldl, &ldl->source[s], column, sum);
+    for (PetscInt s = ldl->first[p]; s < ldl->first[p + 1]; ++s) SubtractSource(ldl, &ldl->source[s], column, sum);
     for (PetscInt t = 0; t < width; ++t) {
       const PetscInt rows = start[j + t + 1] - start[j + t];
 

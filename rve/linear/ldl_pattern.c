@@ -166,10 +166,8 @@ static void ListSources(LamLDL ldl, PetscInt panel, const PetscInt panel_of[], P
     const PetscBool both = (PetscBool)(rows[k] == j && k + 1 < below && panel_of[rows[k + 1]] == to);
 
     if (source)
-      source[at[to]] = (LamSource){column, width, k, below - k, 0,
-                                   both           ? LAM_TO_BOTH
-                                   : rows[k] == j ? LAM_TO_FIRST
-                                                  : LAM_TO_SECOND};
+      source[at[to]] =
+          (LamSource){column, width, k, below - k, 0, both ? LAM_TO_BOTH : rows[k] == j ? LAM_TO_FIRST : LAM_TO_SECOND};
     ++at[to];
     if (both) ++k;
   }

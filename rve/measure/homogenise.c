@@ -283,6 +283,27 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscBool derivative
   PetscFunctionReturn(0);
 }
 
+/* Adds the terms of an edge of the lamella with shifted nodes. */
+static void AddLayerEdge(void *ctx, const LamEdgeBlock *block)
+{
+  Condensation *c = (Condensation *)ctx;
+
+  for (PetscInt j = 0; j < LAM_EDGE_DOFS; ++j)
+    for (PetscInt l = 0; l < 2; ++l) {
+      const PetscReal Sj = block->shift[j / 2][l];
+      const PetscInt q = 2 * (j % 2) + l;
+
+      if (Sj == 0.0) continue;
+      c->Lq[q] += block->sum.f[j] * Sj;
+      for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
+        const PetscReal K = block->sum.K[i][j] * Sj;
+
+        c->R[q * c->size + 2 * block->class[i / 2] + i % 2] += K;
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] += block->shift[i / 2][k] * K;
+      }
+    }
+}
+
 /* Sums L_q, L_qq and R, which the caller frees. */
 static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
 {
@@ -298,6 +319,7 @@ static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
     AddGapVolume(rve, load, c);
     for (PetscInt f = 0; LamIsExact(rve) && f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);
     if (!LamIsExact(rve)) LamSmoothVisit(rve, load, rve->y, LAM_TOUCH_WIDTH, AddTouchBlock, &terms);
+    if (rve->layer) LamLayerVisit(rve, load->F, rve->y, AddLayerEdge, c);
   }
   PetscFunctionReturn(0);
 }

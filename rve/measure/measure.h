@@ -5,6 +5,7 @@
     traction.c     largest means along faces; interface tractions of bonded faces
     failure.c      stretch, energy and tension of the walls, and whether they kink (wall_ellipticity.h)
     indicators.c   debonding: separation of cells
+    bonds.c        the lamella: energies and damage
     lumen.c        collapsed lumens
     fields.c       fields for pictures
 */
@@ -26,8 +27,8 @@ PetscErrorCode LamAssembleGradient(LamRVE rve, const LamLoad *load, PetscReal Lq
                                    PetscReal Lqq[LAM_F_COUNT][LAM_F_COUNT], PetscReal R[]);
 /* Copies a column [n], with zeros for multipliers that are not active. */
 void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
-/* Sets energy, P and lumen fraction at rve->y, where the consistent tangent is assembled and factored, and, if requested,
-   tangent and couplings. */
+/* Sets energy, P and lumen fraction at rve->y, where the consistent tangent is assembled and factored, and, if
+   requested, tangent and couplings. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Whether a value exceeds that of the location reported so far by more than rounding (C1 + C2 or apothems). Among
    locations that are equal by symmetry the first one is reported, regardless of the last digits. Every value exceeds
@@ -80,6 +81,10 @@ PetscErrorCode LamRefuseKinks(const LamKinking *kinking, PetscReal reached, LamS
 /* Sets the debonding indicators from rve->y and the multipliers; for contact tissue also the tractions. */
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
 void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response);
+
+/* ---- bonds.c ---- */
+/* Sets energies and broken fractions of tissue with a lamella; after LamHomogenise. */
+void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop at positions y intersects itself or is inverted; -1: none. */

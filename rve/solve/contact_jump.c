@@ -6,6 +6,9 @@
     defect = Psi_1 - Psi_0 - 1/2 (Psi,q_0 + Psi,q_1).(q_1 - q_0) < 0,     q = (F11, F12, F21, F22, F33, p, g).
   A large defect may also come from curvature. The interval is therefore bisected, and the half with the lower defect
   kept: a defect of curvature falls at least fourfold each time, that of a jump stays.
+
+  With a lamella the state depends on the way to it, and a jump that is not one breaks what would hold. There a
+  suspicious step is taken again in halves, and these again: the state is that at the end of them.
 */
 #include "solve.h"
 
@@ -45,7 +48,12 @@ static PetscReal Defect(const LamRVEState from, const LamRVEState to, PetscReal 
     defect -= part;
     *work += PetscAbsReal(0.5 * (to->energy[1 + k] - from->energy[1 + k]) * dq[k]);
   }
-  return from->width == to->width ? defect : NAN;
+  return from->width == to->width || from->points ? defect : NAN;
+}
+
+static PetscBool IsSuspicious(PetscReal defect, PetscReal work)
+{
+  return (PetscBool)(defect < -PetscMax(LEAST_ENERGY, SUSPICIOUS * work));
 }
 
 /* Bisects between `low` and `high`; defect: in, of the interval; out, of the last half; NaN: a state was not found. */
@@ -102,9 +110,73 @@ static PetscErrorCode Look(LamRVE rve, LamRVEState low, LamRVEState high, PetscR
     PetscCall(MakeSmooth(rve, high));
   }
   *left = *defect = Defect(low, high, &work);
-  if (*defect < -PetscMax(LEAST_ENERGY, SUSPICIOUS * work)) PetscCall(Bisect(rve, low, high, left));
+  if (IsSuspicious(*defect, work)) PetscCall(Bisect(rve, low, high, left));
   rve->micro.sharpness = sharpness;
   rve->micro.contact_width = asked;
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  PetscReal first; /* defect of the whole step */
+  PetscReal lost;  /* in jumps */
+  PetscInt iterations, factorisations;
+  LamResponse response; /* of the last state */
+} Retracing;
+
+/* Takes the step from `at` to a load, in halves while it is suspicious; on return `at` is the state there. */
+static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, PetscInt halvings, Retracing *r)
+{
+  const LamLoad start = at->load;
+  PetscReal defect, work;
+  LamRVEState end;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &end));
+  PetscCall(LamRVEStateCopy(at, end));
+  PetscCall(LamRVESolve(rve, load, end, &r->response));
+  r->iterations += r->response.newton_iterations;
+  r->factorisations += r->response.factorisations;
+  defect = r->response.status == LAM_CONVERGED ? Defect(at, end, &work) : NAN;
+  if (IsSuspicious(defect, work) && halvings > 0) {
+    const LamLoad middle = LamLoadBetween(&start, load, 0.5);
+
+    PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
+    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, load, halvings - 1, r));
+  } else if (r->response.status == LAM_CONVERGED) {
+    if (defect < STAYS * r->first) r->lost -= defect;
+    PetscCall(LamRVEStateCopy(end, at));
+  }
+  PetscCall(LamRVEStateDestroy(&end));
+  PetscFunctionReturn(0);
+}
+
+/* Replaces a suspicious state of tissue with a lamella, and its response. */
+static PetscErrorCode RetraceStep(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response)
+{
+  const LamLoad middle = LamLoadBetween(&before->load, &state->load, 0.5);
+  const LamWork work = rve->work;
+  Retracing r = {.iterations = response->newton_iterations, .factorisations = response->factorisations};
+  PetscReal unused;
+
+  PetscFunctionBeginUser;
+  r.first = Defect(before, state, &unused);
+  PetscCall(Retrace(rve, before, &middle, HALVINGS - 1, &r));
+  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, before, &state->load, HALVINGS - 1, &r));
+  if (r.response.status == LAM_CONVERGED) {
+    PetscCall(LamRVEStateCopy(before, state));
+    *response = r.response;
+  } else {
+    PetscCall(LamTakeState(rve, state));
+    r.lost = -r.first;
+  }
+  rve->work.stopped = (PetscBool)(rve->work.stopped || work.stopped);
+  response->newton_iterations = r.iterations;
+  response->factorisations = r.factorisations;
+  response->jumped = (PetscBool)(r.lost > LEAST_ENERGY);
+  if (!response->jumped) PetscFunctionReturn(0);
+  response->energy_released = r.lost;
+  state->released += r.lost * rve->mesh.V0;
+  response->released = state->released / rve->mesh.V0;
   PetscFunctionReturn(0);
 }
 
@@ -116,8 +188,14 @@ PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, Lam
   PetscFunctionBeginUser;
   if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
   if (Change(&before->load, &state->load, dq) > FARTHEST) PetscFunctionReturn(0);
-  if (before->width == state->width && !(Defect(before, state, &work) < -PetscMax(LEAST_ENERGY, SUSPICIOUS * work)))
+  defect = Defect(before, state, &work);
+  if (before->width == state->width && !IsSuspicious(defect, work)) PetscFunctionReturn(0);
+  if (rve->layer) {
+    rve->looks_back = PETSC_TRUE;
+    if (IsSuspicious(defect, work)) PetscCall(RetraceStep(rve, before, state, response));
+    rve->looks_back = PETSC_FALSE;
     PetscFunctionReturn(0);
+  }
   PetscCall(LamRVEStateCreate(rve, &high));
   PetscCall(LamRVEStateCopy(state, high));
   rve->looks_back = PETSC_TRUE;

@@ -4,7 +4,7 @@
   Method. The state is sought at the load itself (contact_find.c). If that fails, a path of loads is followed with the
   smooth law, each state starting from the one before, in steps that are halved on failure: from the state before, then
   from the undeformed tissue. A path that ends tells why: the walls have no room, a lumen is turned inside out, or walls
-  kink, which no mesh resolves.
+  kink, which no mesh resolves. With a lamella each state on the path is solved to the end, and its history is kept.
 */
 #include "contact_find.h"
 
@@ -40,10 +40,15 @@ static PetscErrorCode Walk(LamRVE rve, LamRVEState at, const LamLoad *load, Way 
     const LamLoad next = t >= 1.0 ? *load : LamLoadBetween(&start, load, t);
 
     if (step < least) break;
-    LamContactStartNear(rve, at, &next);
-    PetscCall(LamContactSearch(rve, &next, NULL, LAM_SEARCH_WIDTH, TOLERANCE, out));
-    if (out->found) {
+    if (rve->layer) {
+      PetscCall(LamContactFind(rve, &next, NULL, at, out));
+    } else {
+      LamContactStartNear(rve, at, &next);
+      PetscCall(LamContactSearch(rve, &next, NULL, LAM_SEARCH_WIDTH, TOLERANCE, out));
+    }
+    if (rve->layer ? LamContactIsStable(out) : out->found) {
       LamKeepState(rve, &next, at->branch, at);
+      if (t < 1.0) LamLayerTake(rve, at);
       LamWatchKinks(rve, &next, at->y, t, &way->kinking);
       way->between[0] = t;
       step *= GROWTH;
@@ -119,15 +124,16 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
   LamRVEState before, at;
   LamContactOutcome out;
   Way way = {.shut = -1, .kinking = LAM_NO_KINKING};
+  const PetscInt most = rve->layer && state->solved ? 1 : 2; /* a history does not begin again */
 
   PetscFunctionBeginUser;
   PetscCall(LamTurnedState(rve, state, load, &before));
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
   PetscCall(LamContactFind(rve, load, NULL, before, &out));
-  for (PetscInt k = before->solved ? 0 : 1; k < 2 && !out.found && !rve->work.stopped; ++k) {
+  for (PetscInt k = before->solved ? 0 : 1; k < most && !out.found && !rve->work.stopped; ++k) {
     PetscCall(k == 0 ? Walk(rve, at, load, &way, &out) : WalkFromRest(rve, at, load, &way, &out));
-    if (out.found) PetscCall(LamContactFinish(rve, load, NULL, &out));
+    if (out.found && !rve->layer) PetscCall(LamContactFinish(rve, load, NULL, &out));
   }
   PetscCall(LamRVEStateDestroy(&before));
   PetscCall(LamRVEStateDestroy(&at));

@@ -67,6 +67,8 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
     rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
+  if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
+    rve->stiffest = PetscMax(rve->stiffest, rve->micro.lamella.stiffness * LamLongestEdge(&rve->mesh));
   PetscFunctionReturn(0);
 }
 
@@ -105,6 +107,8 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   PetscCall(LamGeometryCreate(rve));
   if (LamCellsPart(rve->micro.interface)) {
     PetscCall(LamContactCreate(&rve->micro, &rve->mesh, &rve->contact));
+    if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
+      PetscCall(LamLayerCreate(&rve->micro, &rve->mesh, rve->contact, &rve->layer));
     PetscCall(LamSmoothCreate(rve));
   } else {
     PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, rve->linear));
@@ -149,6 +153,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   if (!*rve) PetscFunctionReturn(0);
   PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
+  PetscCall(LamLayerDestroy(&(*rve)->layer));
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamSmoothDestroy(&(*rve)->smooth));
   for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
@@ -223,6 +228,7 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   PetscFunctionBeginUser;
   if (rve->contact) PetscCall(FillContact(rve, load, response));
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
+  if (rve->layer) LamLayerMeasures(rve, load, response);
   if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
   if (rve->contact) {
@@ -275,6 +281,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   LamForgetTangent(rve);
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   LamTakeJunctions(rve, state);
+  LamLayerTake(rve, state);
   PetscFunctionReturn(0);
 }
 
@@ -315,7 +322,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
   const PetscBool looks =
-      (PetscBool)((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved && !rve->looks_back);
+      (PetscBool)(((rve->wanted & LAM_WANT_JUMPS) || rve->layer) && rve->contact && state->solved && !rve->looks_back);
   LamRVEState before = NULL;
 
   PetscFunctionBeginUser;

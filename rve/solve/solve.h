@@ -103,8 +103,8 @@ PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, Lam
 /* ---- nested.c ---- */
 /* Whether a solve from `state` should start from the solution on a coarser mesh. */
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state);
-/* Solves on a finer mesh, whose response was begun, from the interpolated solution that `coarse` holds, which is that of
-   `from`; `to` is set if that converges. */
+/* Solves on a finer mesh, whose response was begun, from the interpolated solution that `coarse` holds, which is that
+   of `from`; `to` is set if that converges. */
 PetscErrorCode LamProlong(LamRVE coarse, LamRVEState from, LamRVE rve, LamRVEState to);
 /* Solves on a coarser mesh and returns its response. If it and Newton from its interpolated solution converge, `start`
    becomes the solution on this mesh. */

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 8
+#define MOST_PARTS 11
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -21,7 +21,10 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {&s->branch, sizeof(s->branch)},
                                 {&s->solved, sizeof(s->solved)},
                                 {&s->width, sizeof(s->width)},
-                                {s->energy, s->multipliers ? sizeof(s->energy) : 0}};
+                                {s->energy, s->multipliers ? sizeof(s->energy) : 0},
+                                {s->history, (size_t)s->points * sizeof(*s->history)},
+                                {&s->spent, s->points ? sizeof(s->spent) : 0},
+                                {&s->released, s->points ? sizeof(s->released) : 0}};
   PetscInt count = 0;
 
   for (PetscInt k = 0; k < MOST_PARTS; ++k)
@@ -83,8 +86,9 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   (*state)->n = rve->length;
   (*state)->multipliers = rve->contact ? rve->contact->count : 0;
   (*state)->faces = rve->contact ? rve->contact->face_count : 0;
-  PetscCall(PetscMalloc3((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
-                         &(*state)->hats));
+  (*state)->points = rve->layer ? rve->layer->count : 0;
+  PetscCall(PetscMalloc4((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats, (*state)->points, &(*state)->history));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
@@ -104,6 +108,8 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->solved = PETSC_FALSE;
   state->width = 0.0;
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = NAN;
+  for (PetscInt p = 0; p < state->points; ++p) state->history[p] = LAM_UNDAMAGED;
+  state->spent = state->released = 0.0;
   PetscFunctionReturn(0);
 }
 
@@ -111,7 +117,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(PetscFree3((*state)->y, (*state)->lambda, (*state)->hats));
+  PetscCall(PetscFree4((*state)->y, (*state)->lambda, (*state)->hats, (*state)->history));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
@@ -127,6 +133,7 @@ void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState 
   }
   state->solved = PETSC_TRUE;
   state->width = rve->contact && !rve->contact->exact ? rve->smooth->width : 0.0;
+  LamLayerKeep(rve, load, state);
   state->load = *load;
   state->branch = branch;
 }

@@ -1,0 +1,45 @@
+/*
+  The lamella between facing walls, law `lamella` (cohesive.h, cohesive_edge.h).
+
+  Facing walls lie on each other at rest and have equal meshes: a point of the lamella joins the two points with the
+  same reference place. Compression is not the lamella's: walls are kept apart by contact, with or without it.
+*/
+#ifndef LAM_RVE_LAMELLA_H
+#define LAM_RVE_LAMELLA_H
+
+#include "cohesive_edge.h"
+#include "contact.h"
+
+typedef struct {
+  PetscInt count;                    /* points: those of edge e of face f begin at LAM_EDGE_POINTS (f along + e) */
+  LamBond *bond;                     /* [count] with the history at the start of the step */
+  PetscReal *weight;                 /* [count] reference length */
+  PetscReal spent;                   /* energy dissipated, and ... */
+  PetscReal released;                /* ... lost in jumps, until the start of the step; not divided by V0 */
+  PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
+                                        in use; -1: prescribed */
+} LamLayer;
+
+/* Sums over the points of an edge. */
+typedef struct {
+  PetscInt edge;
+  PetscInt class[LAM_EDGE_NODES];     /* of its nodes */
+  PetscReal shift[LAM_EDGE_NODES][2]; /* x = y_class + F shift */
+  LamCohesiveSum sum;
+} LamEdgeBlock;
+typedef void (*LamEdgeVisitor)(void *ctx, const LamEdgeBlock *block);
+
+/* A point at some positions. */
+typedef struct {
+  PetscInt point, face;
+  PetscReal at; /* in edges from the start of its face */
+  LamJump jump;
+  LamCohesiveStep step;
+} LamBondPoint;
+typedef void (*LamBondVisitor)(void *ctx, const LamBondPoint *point);
+
+PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact,
+                              LamLayer **layer);
+PetscErrorCode LamLayerDestroy(LamLayer **layer);
+
+#endif

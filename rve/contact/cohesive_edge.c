@@ -1,0 +1,105 @@
+#include "cohesive_edge.h"
+
+/* Gauss's rule on [0, 1]. */
+static const PetscReal place[LAM_EDGE_POINTS] = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
+                                                 0.953089922969332};
+static const PetscReal share[LAM_EDGE_POINTS] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                                 0.23931433524968324, 0.11846344252809454};
+
+PetscReal LamEdgePlace(PetscInt q)
+{
+  return place[q];
+}
+
+PetscReal LamEdgeWeight(PetscInt q)
+{
+  return share[q];
+}
+
+void LamBondTake(const LamBondHistory *history, LamBond *bond)
+{
+  bond->before = *history;
+  bond->now = LamEnvelopeOf(&bond->law, history->mode);
+  bond->kappa = LamEnvelopeReach(&bond->now, history->integrity);
+}
+
+LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCohesiveStep *step)
+{
+  LamBondHistory history = bond->before;
+
+  if (step->kappa > bond->kappa) history.integrity = LamEnvelopeIntegrity(&bond->now, step->kappa);
+  history.mode = LamJumpMode(jump, bond->law.beta, history.mode);
+  return history;
+}
+
+/* What jump and tangent of point q depend on: z = sum weight[k] x_k. */
+static void WeighNodes(PetscInt q, PetscReal weight[LAM_EDGE_NODES][2])
+{
+  const PetscReal s = place[q];
+  const PetscReal N[3] = {(1.0 - s) * (1.0 - 2.0 * s), 4.0 * s * (1.0 - s), s * (2.0 * s - 1.0)};
+  const PetscReal dN[3] = {4.0 * s - 3.0, 4.0 - 8.0 * s, 4.0 * s - 1.0};
+
+  for (PetscInt k = 0; k < LAM_EDGE_NODES; ++k) {
+    weight[k][0] = k < 3 ? N[k] : -N[k - 3];
+    weight[k][1] = 0.5 * dN[k % 3];
+  }
+}
+
+static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const PetscReal weight[LAM_EDGE_NODES][2],
+                     const LamBond *bond, LamJump *jump, LamCohesiveStep *step)
+{
+  PetscReal difference[2] = {0.0}, tangent[2] = {0.0};
+
+  for (PetscInt k = 0; k < LAM_EDGE_NODES; ++k)
+    for (PetscInt d = 0; d < 2; ++d) {
+      difference[d] += weight[k][0] * u[k][d];
+      tangent[d] += weight[k][1] * (X[k][d] + u[k][d]);
+    }
+  LamJumpEvaluate(difference, tangent, bond->law.beta, jump);
+  LamCohesiveStepEvaluate(&bond->now, bond->kappa, jump->q, step);
+}
+
+void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
+                          LamJump *jump, LamCohesiveStep *step)
+{
+  PetscReal weight[LAM_EDGE_NODES][2];
+
+  WeighNodes(q, weight);
+  Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
+}
+
+/* Adds the derivatives of w phi(q(z)). */
+static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal w,
+                     const PetscReal weight[LAM_EDGE_NODES][2], LamCohesiveSum *sum)
+{
+  PetscReal H[4][4];
+
+  for (PetscInt a = 0; a < 4; ++a)
+    for (PetscInt b = 0; b < 4; ++b) H[a][b] = step->dd * jump->dq[a] * jump->dq[b] + step->d * jump->ddq[a][b];
+  sum->energy += w * step->phi;
+  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
+    const PetscInt d = i % 2;
+    const PetscReal jumping = w * weight[i / 2][0], turning = w * weight[i / 2][1];
+    PetscReal row[4];
+
+    sum->f[i] += step->d * (jumping * jump->dq[d] + turning * jump->dq[2 + d]);
+    for (PetscInt b = 0; b < 4; ++b) row[b] = jumping * H[d][b] + turning * H[2 + d][b];
+    for (PetscInt j = 0; j < LAM_EDGE_DOFS; ++j)
+      sum->K[i][j] += row[j % 2] * weight[j / 2][0] + row[2 + j % 2] * weight[j / 2][1];
+  }
+}
+
+void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
+                     LamCohesiveSum *sum)
+{
+  *sum = (LamCohesiveSum){0};
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
+    PetscReal weight[LAM_EDGE_NODES][2];
+    LamCohesiveStep step;
+    LamJump jump;
+
+    WeighNodes(q, weight);
+    Evaluate(X, u, (const PetscReal(*)[2])weight, &bonds[q], &jump, &step);
+    AddPoint(&jump, &step, length * share[q], (const PetscReal(*)[2])weight, sum);
+  }
+}

@@ -1,0 +1,56 @@
+/*
+  The lamella on one edge of a wall: the cohesive law (cohesive.h) at the Gauss points between two facing edges.
+
+  With the shape functions N of the three nodes of an edge, at the same reference place of both walls,
+    jump = sum N (x_slave - x_master),    tangent = 1/2 sum N' (x_slave + x_master),
+  energy, forces and tangent are derivatives of sum_q w_q phi(q(jump, tangent)).
+*/
+#ifndef LAM_RVE_COHESIVE_EDGE_H
+#define LAM_RVE_COHESIVE_EDGE_H
+
+#include "cohesive.h"
+
+#define LAM_EDGE_POINTS 5 /* Gauss points of an edge (docs/theory/lamella.md, Points) */
+#define LAM_EDGE_NODES 6  /* start, middle and end of the slave's, then of the master's at the same places */
+#define LAM_EDGE_DOFS (2 * LAM_EDGE_NODES)
+#define LAM_EDGE_PAIRS (LAM_EDGE_NODES * (LAM_EDGE_NODES + 1) / 2)
+
+/* Place in [0, 1] of point q, and its share of the edge's length. */
+PetscReal LamEdgePlace(PetscInt q);
+PetscReal LamEdgeWeight(PetscInt q);
+
+/* History of a point. */
+typedef struct {
+  PetscReal integrity; /* omega: 1 undamaged, 0 broken */
+  PetscReal mode;      /* B; negative: it has never been open */
+} LamBondHistory;
+#define LAM_UNDAMAGED ((LamBondHistory){.integrity = 1.0, .mode = -1.0})
+
+/* A point in a step. */
+typedef struct {
+  LamCohesive law;
+  LamBondHistory before; /* at the start of the step, with ... */
+  LamEnvelope now;       /* ... its envelope */
+  PetscReal kappa;       /* ... and its kappa */
+} LamBond;
+/* Begins a step. */
+void LamBondTake(const LamBondHistory *history, LamBond *bond);
+/* Its history at the end, and the energy per area dissipated in it. */
+LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCohesiveStep *step);
+static inline PetscReal LamBondSpent(const LamBond *bond, const LamCohesiveStep *step)
+{
+  return LamEnvelopeSpent(&bond->now, step->kappa) - LamEnvelopeSpent(&bond->now, bond->kappa);
+}
+
+/* Reference positions X and displacements u of the nodes; the jump is that of the displacements. */
+void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
+                          LamJump *jump, LamCohesiveStep *step);
+
+typedef struct {
+  PetscReal energy, f[LAM_EDGE_DOFS], K[LAM_EDGE_DOFS][LAM_EDGE_DOFS]; /* dof = 2 node + component */
+} LamCohesiveSum;
+/* bonds [LAM_EDGE_POINTS]; length: reference length of the edge. */
+void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
+                     LamCohesiveSum *sum);
+
+#endif
