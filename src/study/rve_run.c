@@ -7,6 +7,7 @@
 #include "rounding.h"
 #include "rve_fields.h"
 #include "turgor_stretch.h"
+#include <math.h>
 
 /* Fields are written first, so that a committed record always has them. */
 static PetscErrorCode WriteState(LamRVERun *run, PetscInt number, const LamResponse *response)
@@ -83,6 +84,46 @@ static void CountDoubts(LamRVERun *run, const LamResponse *response)
   run->most_kinked = PetscMax(run->most_kinked, response->kinked_fraction);
 }
 
+/* The largest principal Cauchy stress in the plane. */
+static PetscReal LargestTension(const LamResponse *response)
+{
+  const PetscReal *F = response->load.F, *P = response->P, J = (F[0] * F[4] - F[1] * F[3]) * F[8];
+  const PetscReal s11 = P[0] * F[0] + P[1] * F[1], s22 = P[3] * F[3] + P[4] * F[4], s12 = P[0] * F[3] + P[1] * F[4];
+
+  return (0.5 * (s11 + s22) + hypot(0.5 * (s11 - s22), s12)) / J;
+}
+
+/* The Cauchy stress of cohesion, in all directions; where cells differ that of the gaps that are open. */
+static PetscReal Suction(const LamMicrostructure *micro, const LamResponse *response)
+{
+  return response->load.cohesion * (micro->cell ? response->energy_cohesion / response->opening_fraction : 1);
+}
+
+#define OPEN_SHARE 0.5    /* of the interface: its cells have come apart, not their junctions alone */
+#define SUCTION_ALONE 0.9 /* of the suction: walls that touch take less than a tenth of it away */
+
+/*
+  Once, of cells that have come apart and are still pulled by the cohesion of law `contact`. Walls that touch push: they
+  can only lower the stress below the suction g, and where its largest principal value is g none touch across a line.
+  The held walls of a patch pull, too.
+*/
+static void WarnOfSuction(LamRVERun *run, const LamResponse *response)
+{
+  const LamScene *scene = run->scene;
+
+  if (run->warned_of_suction || scene->micro.interface != LAM_INTERFACE_CONTACT) return;
+  if (!LamResponseHasFields(response) || !(response->load.cohesion > 0)) return;
+  if (!(response->open_fraction > OPEN_SHARE)) return;
+  if (!(LargestTension(response) > SUCTION_ALONE * Suction(&scene->micro, response))) return;
+  run->warned_of_suction = PETSC_TRUE;
+  LamReportWarning(&run->reporter,
+                   "%s: cohesion: %.4g MPa: still pulls at cells that have come apart (state %d, %.0f %% of the "
+                   "interface open): with law: contact it is a suction that acts at any gap and never ends; law: "
+                   "lamella, with strength and fracture_energy, gives it a range and an energy",
+                   scene->path, (double)(response->load.cohesion * scene->scales.stress * 1e-6), (int)run->solved,
+                   (double)(100 * response->open_fraction));
+}
+
 static void ReportDoubts(const LamRVERun *run)
 {
   if (run->inaccurate)
@@ -140,6 +181,7 @@ static PetscErrorCode SolveStates(LamRVERun *run)
     run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     CountDoubts(run, &responses[0]);
+    WarnOfSuction(run, &responses[0]);
     if (run->readings)
       PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
     if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));

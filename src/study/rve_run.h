@@ -44,7 +44,8 @@ typedef struct LamRVERun_s {
   PetscInt unknown;    /* number of states without an error estimate */
   PetscInt kinked;     /* number of states in which walls wrinkle on the scale of the mesh */
   PetscReal most_kinked;
-  PetscReal start; /* set by the caller */
+  PetscBool warned_of_suction; /* of contact tissue that has come apart */
+  PetscReal start;             /* set by the caller */
 } LamRVERun;
 
 /* Chooses what the scene leaves open, and makes the meshes. PETSC_ERR_USER_INPUT if the scene has no load. */
