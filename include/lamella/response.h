@@ -53,7 +53,8 @@ typedef struct {
   PetscReal lumen_fraction;         /* V_lumen / V0 */
   PetscReal opening_fraction;       /* V_gap / V0 */
   PetscReal opening_by_face[3];     /* area between facing walls of a face family / V0, without junction voids */
-  PetscReal debonded_fraction;      /* fraction of the interface length without contact; 0 for bonded tissue */
+  PetscReal debonded_fraction;      /* fraction of the interface length without contact, and without a lamella that
+                                       holds, i.e. of which less than 99 % is spent; 0 for bonded tissue */
   PetscReal debonded_by_face[3];
   PetscReal open_fraction; /* fraction of the interface length with a gap above LAM_VISIBLE_GAP */
   PetscReal open_by_face[3];
@@ -76,7 +77,7 @@ typedef struct {
   /* tractions are NaN if there is no such face: in a patch too narrow for a face family, or of a single cell */
   PetscReal max_traction;      /* largest normal Cauchy traction averaged over one wall thickness, tension > 0 */
   PetscReal normal_place[3];   /* location of max_traction: cell, face, position along the face in [0, 1] */
-  PetscReal max_lamella_shear; /* magnitude of the shear traction, likewise; 0 for contact tissue */
+  PetscReal max_lamella_shear; /* magnitude of the shear traction, likewise; 0 for law `contact` */
   PetscReal shear_place[3];
   PetscReal mean_face_traction[3]; /* mean normal Cauchy traction per face family, tension > 0 */
   /* wall averages over the thickness t and a length t along the wall: fibre stretch, energy density without U,
@@ -105,9 +106,10 @@ typedef struct {
   PetscBool stable;
   /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated
    */
-  PetscReal stored;          /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
-  PetscReal dissipated;      /* spent in the lamella */
-  PetscReal released;        /* lost in jumps, i.e. to sound and heat; known with LAM_WANT_JUMPS in all states so far */
+  PetscReal stored;     /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
+  PetscReal dissipated; /* spent in the lamella */
+  PetscReal work;       /* of stress, turgor and suction, by the trapezoidal rule: stored + dissipated + released */
+  PetscReal released;   /* lost in jumps, i.e. to sound and heat; known with LAM_WANT_JUMPS in all states so far */
   PetscReal broken_fraction; /* share of the lamella's fracture energy that is spent */
   PetscReal broken_by_face[3];
   PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */

@@ -114,7 +114,8 @@ LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE 
   Estimates the error of a state's P, as LamWholeError, from the same load on a mesh with half as many
   elements again along the faces and through the walls. It costs three to four times a bonded state, twice a contact
   state. LamRVEEstimateError sets response->error_estimate of the response that belongs to `state`, and adds its time.
-  The estimate is NaN for sealed cells and where the finer mesh has no state near. Borrows `rve`.
+  The estimate is NaN for sealed cells and where the finer mesh has no state near. With a lamella it solves all states of
+  a program on its own mesh: call it for each of them, in order, from the first one. Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

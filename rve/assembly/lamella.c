@@ -215,12 +215,14 @@ void LamLayerTake(LamRVE rve, const LamRVEState state)
   if (!layer) return;
   layer->spent = state->spent;
   layer->released = state->released;
+  layer->work = state->work;
   for (PetscInt p = 0; p < layer->count; ++p) LamBondTake(&state->history[p], &layer->bond[p]);
 }
 
 typedef struct {
   const LamLayer *layer;
   LamRVEState state;
+  PetscReal V0;
 } Keeping;
 
 static void KeepBond(void *ctx, const LamBondPoint *point)
@@ -229,15 +231,16 @@ static void KeepBond(void *ctx, const LamBondPoint *point)
   const LamBond *bond = &k->layer->bond[point->point];
 
   k->state->history[point->point] = LamBondKeep(bond, &point->jump, &point->step);
-  k->state->spent += k->layer->weight[point->point] * LamBondSpent(bond, &point->step);
+  k->state->spent += k->layer->weight[point->point] * LamBondSpent(bond, &point->step) / k->V0;
 }
 
 void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state)
 {
-  Keeping keeping = {rve->layer, state};
+  Keeping keeping = {rve->layer, state, rve->mesh.V0};
 
   if (!rve->layer) return;
   state->spent = rve->layer->spent;
   state->released = rve->layer->released;
+  state->work = rve->layer->work;
   LamLayerVisitPoints(rve, load->F, rve->y, KeepBond, &keeping);
 }

@@ -14,8 +14,7 @@ typedef struct {
   PetscInt count;                    /* points: those of edge e of face f begin at LAM_EDGE_POINTS (f along + e) */
   LamBond *bond;                     /* [count] with the history at the start of the step */
   PetscReal *weight;                 /* [count] reference length */
-  PetscReal spent;                   /* energy dissipated, and ... */
-  PetscReal released;                /* ... lost in jumps, until the start of the step; not divided by V0 */
+  PetscReal spent, released, work;   /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
 } LamLayer;

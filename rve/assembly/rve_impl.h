@@ -43,7 +43,7 @@ struct LamRVEState_s {
   /* law `lamella` only */
   PetscInt points;
   LamBondHistory *history;            /* [points] */
-  PetscReal spent, released;          /* energies dissipated and lost in jumps so far; not divided by V0 */
+  PetscReal spent, released, work;    /* energies per V0 so far: dissipated, lost in jumps, work of the loads */
   PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
 };
 
@@ -97,8 +97,9 @@ struct LamRVE_s {
   PetscInt budget;                        /* current limit of its iterations */
   PetscBool (*interrupt)(void *ctx);      /* NULL: never */
   void *interrupt_ctx;                    /* borrowed */
-  PetscBool looks_back;                   /* the solve looks for the end of a branch before it: no further one does */
-  PetscReal energy;                       /* of the last assembly */
+  PetscBool near_only;         /* a solve that does not continue the branch of the exact law ends, without a state */
+  PetscBool looks_back;        /* the solve looks for the end of a branch before it: no further one does */
+  PetscReal energy;            /* of the last assembly */
   PetscBool consistent;        /* residual and linear.values are evaluated at y with the wall stresses of y */
   PetscBool moved;             /* y has been moved affinely since the last solution */
   PetscReal lowest_eigenvalue; /* of the last unstable state found */

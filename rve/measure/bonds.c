@@ -1,4 +1,4 @@
-/* Energies and damage of the lamella at rve->y. */
+/* Energies, damage and forces of the lamella at rve->y. */
 #include "measure.h"
 
 typedef struct {
@@ -20,6 +20,67 @@ static void AddBond(void *ctx, const LamBondPoint *point)
   bonds->toughness[family] += weight * bond->now.energy;
 }
 
+#define BROKEN 0.99 /* share of the fracture energy from which on a point counts as broken: some laws never end */
+
+typedef struct {
+  LamRVE rve;
+  LamLayerForces *forces;
+} Holding;
+
+static void AddHolding(void *ctx, const LamBondPoint *point)
+{
+  const Holding *h = (const Holding *)ctx;
+  const LamLayer *layer = h->rve->layer;
+  const LamBond *bond = &layer->bond[point->point];
+  const PetscReal weight = layer->weight[point->point], secant = 2.0 * point->step.d;
+  const PetscInt hat = point->face * h->rve->contact->hats + (PetscInt)(2.0 * point->at + 0.5);
+
+  /* t = d phi/d jump: of the normal part 2 d delta_n where it is open, of the tangential one 2 d beta^2 delta_t */
+  h->forces->normal[point->point] = weight * secant * PetscMax(0.0, point->jump.normal);
+  h->forces->shear[point->point] = weight * secant * bond->law.beta * bond->law.beta * point->jump.shear;
+  if (LamEnvelopeSpent(&bond->now, point->step.kappa) < BROKEN * bond->now.energy) h->forces->held[hat] += weight;
+}
+
+PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerForces *forces)
+{
+  const Holding holding = {rve, forces};
+
+  PetscFunctionBeginUser;
+  *forces = (LamLayerForces){0};
+  if (!rve->layer) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc3(rve->layer->count, &forces->normal, rve->layer->count, &forces->shear, rve->contact->count,
+                         &forces->held));
+  LamLayerVisitPoints(rve, load->F, rve->y, AddHolding, (void *)&holding);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLayerForcesDestroy(LamLayerForces *forces)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(forces->normal, forces->shear, forces->held));
+  PetscFunctionReturn(0);
+}
+
+/* Force over the first part of an edge, which ends at s: each point's is spread over its share of the edge. */
+static PetscReal ForceUpTo(const PetscReal force[], PetscReal s)
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS && s > 0.0; ++q) {
+    sum += force[q] * PetscMin(1.0, s / LamEdgeWeight(q));
+    s -= LamEdgeWeight(q);
+  }
+  return sum;
+}
+
+PetscReal LamLayerForceBetween(const PetscReal force[], PetscReal a, PetscReal b)
+{
+  const PetscInt e = (PetscInt)(0.5 * (a + b));
+
+  force += LAM_EDGE_POINTS * e;
+  return ForceUpTo(force, b - (PetscReal)e) - ForceUpTo(force, a - (PetscReal)e);
+}
+
 /* Without any lamella to break, none is broken; a patch may lack a face family: NaN. */
 static PetscReal Share(PetscReal whole, PetscReal part)
 {
@@ -38,8 +99,8 @@ void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
     toughness += bonds.toughness[k];
   }
   response->broken_fraction = Share(toughness, spent);
-  response->dissipated = (rve->layer->spent + bonds.dissipated) / rve->mesh.V0;
-  response->released = rve->layer->released / rve->mesh.V0;
+  response->dissipated = rve->layer->spent + bonds.dissipated / rve->mesh.V0;
+  response->released = rve->layer->released;
   response->stored = (rve->energy - bonds.dissipated) / rve->mesh.V0;
   response->energy = response->stored + response->dissipated;
 }

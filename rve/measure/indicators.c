@@ -4,7 +4,7 @@
   Method. The slave side of every face is sampled along the segments of the overlap. Fractions of the interface refer
   to the reference length of the slave walls. A wall outside the overlap faces a junction void: it has no contact and
   does not count as a gap. A face without any overlap is entirely open. Mean tractions are Cauchy: the force over the
-  current length of the whole face, tension positive.
+  current length of the whole face, tension positive. A lamella that is not broken closes a wall as contact does.
 */
 #include "measure.h"
 #include "mortar_impl.h"
@@ -27,7 +27,8 @@ typedef struct {
   PetscReal named_gap;    /* gap at the location reported for max_gap */
   PetscReal gap_at;       /* that location, in edges of its face */
   PetscReal gap_place[3]; /* that location as cell, face, fraction of the face */
-  LamLargestMean traction;
+  LamLargestMean traction, shear;
+  LamLayerForces layer;
   PetscReal fabric[3], jumps[3];
 } Sums;
 
@@ -86,9 +87,10 @@ static PetscReal ContactForce(const LamMortarChains *chains, const PetscReal lam
   return (to - from) * chains->J0[(PetscInt)s] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]);
 }
 
-/* Normal force and current length along one face: running integrals at WINDOW_SAMPLES per edge. */
+/* Normal force and current length along one face: running integrals at WINDOW_SAMPLES per edge. layer: forces of the
+   lamella, or NULL. */
 static void FaceForce(const LamMortarChains *chains, const PetscReal lambda[], PetscReal lo, PetscReal hi, PetscReal g,
-                      PetscReal F33, PetscReal force[], PetscReal length[])
+                      PetscReal F33, const PetscReal layer[], PetscReal force[], PetscReal length[])
 {
   const PetscReal h = 1.0 / WINDOW_SAMPLES;
 
@@ -105,6 +107,23 @@ static void FaceForce(const LamMortarChains *chains, const PetscReal lambda[], P
     length[k + 1] = length[k] + ds;
     force[k + 1] =
         force[k] + g * ds - ContactForce(chains, lambda, h * (PetscReal)k, h * (PetscReal)(k + 1), lo, hi) / F33;
+    if (layer) force[k + 1] += LamLayerForceBetween(layer, h * (PetscReal)k, h * (PetscReal)(k + 1)) / F33;
+  }
+}
+
+/* Largest shear of the lamella along one face, in either direction; force: work space. */
+static void TakeShear(LamRVE rve, const LamContactFace *face, PetscReal F33, const PetscReal layer[], PetscReal force[],
+                      const PetscReal length[], LamLargestMean *shear)
+{
+  const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
+  const PetscReal h = 1.0 / WINDOW_SAMPLES, thickness = LamFaceThickness(rve, face->cell, face->other);
+
+  for (PetscInt sign = 1; sign >= -1; sign -= 2) {
+    force[0] = 0.0;
+    for (PetscInt k = 0; k < count; ++k)
+      force[k + 1] =
+          force[k] + (PetscReal)sign * LamLayerForceBetween(layer, h * (PetscReal)k, h * (PetscReal)(k + 1)) / F33;
+    LamTakeLargestMean(&rve->mesh, thickness, face->cell, face->face, count, force, length, shear);
   }
 }
 
@@ -142,6 +161,12 @@ static void AddJumps(const LamMortarChains *chains, PetscInt hats, const PetscRe
     }
 }
 
+/* Reference length of the wall about a hat that is closed. */
+static PetscReal ClosedLength(const LamContact *contact, const PetscReal held[], PetscInt h)
+{
+  return PetscMax(contact->active[h] ? contact->weight[h] : 0.0, held ? held[h] : 0.0);
+}
+
 static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums *sums)
 {
   LamContact *contact = rve->contact;
@@ -151,6 +176,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   FamilySums *family = &sums->family[contact->faces[f].face];
   const LamMortarSegments *segments = &contact->segments;
   const PetscReal named_gap = sums->named_gap;
+  const PetscInt points = LAM_EDGE_POINTS * rve->mesh.along;
   const LamMortarChains chains = LamContactChains(rve, load->F, rve->y, f);
   PetscReal *force, *length, J0 = 0.0;
 
@@ -165,7 +191,7 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   }
   FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
             segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * contact->faces[f].cohesion,
-            load->F[8], force, length);
+            load->F[8], sums->layer.normal ? &sums->layer.normal[points * f] : NULL, force, length);
   for (PetscInt e = 0; e < chains.n; ++e) J0 += chains.J0[e];
   family->length += J0;
   family->current_length += length[count];
@@ -174,27 +200,30 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   AddJumps(&chains, contact->hats, (const PetscReal(*)[2])contact->x, sums->jumps);
   LamTakeLargestMean(&rve->mesh, thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length,
                      &sums->traction);
+  if (sums->layer.shear)
+    TakeShear(rve, &contact->faces[f], load->F[8], &sums->layer.shear[points * f], force, length, &sums->shear);
   for (PetscInt j = 0; j < contact->hats; ++j) {
-    const PetscInt h = f * contact->hats + j;
+    const PetscReal closed = ClosedLength(contact, sums->layer.held, f * contact->hats + j);
 
-    if (!contact->active[h]) continue;
-    family->closed += contact->weight[h];
-    AddFabric(&chains, j, contact->weight[h], sums->fabric);
+    if (closed == 0.0) continue;
+    family->closed += closed;
+    AddFabric(&chains, j, closed, sums->fabric);
   }
   PetscCall(PetscFree2(force, length));
   PetscFunctionReturn(0);
 }
 
-static PetscBool FaceIsClosed(const LamContact *contact, PetscInt f)
+static PetscBool FaceIsClosed(const LamContact *contact, const PetscReal held[], PetscInt f)
 {
   for (PetscInt h = f * contact->hats; h < (f + 1) * contact->hats; ++h)
-    if (contact->active[h]) return PETSC_TRUE;
+    if (ClosedLength(contact, held, h) > 0.0) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
 /* Groups the cells that closed faces connect. group [cell]: the same number within a group; place [cell]: shift of the
    image that belongs to the same connected piece as the others of its group. Returns the number of groups. */
-static PetscInt GroupCells(const LamContact *contact, PetscInt cells, PetscInt group[], PetscReal place[][2])
+static PetscInt GroupCells(const LamContact *contact, const PetscReal held[], PetscInt cells, PetscInt group[],
+                           PetscReal place[][2])
 {
   PetscInt count = cells;
 
@@ -207,7 +236,7 @@ static PetscInt GroupCells(const LamContact *contact, PetscInt cells, PetscInt g
     const PetscInt a = face->cell, b = face->other, joined = group[b];
     PetscReal move[2];
 
-    if (!FaceIsClosed(contact, f) || group[a] == joined) continue;
+    if (!FaceIsClosed(contact, held, f) || group[a] == joined) continue;
     for (PetscInt d = 0; d < 2; ++d) move[d] = place[a][d] + face->shift[d] - place[b][d];
     for (PetscInt c = 0; c < cells; ++c) {
       if (group[c] != joined) continue;
@@ -221,7 +250,8 @@ static PetscInt GroupCells(const LamContact *contact, PetscInt cells, PetscInt g
 
 /* Rank of the period vectors that a group of cells spans. A closed face between two cells of the group gives a cycle,
    i.e. a period vector. */
-static PetscInt Rank(const LamContact *contact, PetscInt number, const PetscInt group[], const PetscReal place[][2])
+static PetscInt Rank(const LamContact *contact, const PetscReal held[], PetscInt number, const PetscInt group[],
+                     const PetscReal place[][2])
 {
   PetscReal first[2] = {0.0, 0.0};
   PetscInt rank = 0;
@@ -230,7 +260,7 @@ static PetscInt Rank(const LamContact *contact, PetscInt number, const PetscInt 
     const LamContactFace *face = &contact->faces[f];
     PetscReal v[2];
 
-    if (!FaceIsClosed(contact, f) || group[face->cell] != number) continue;
+    if (!FaceIsClosed(contact, held, f) || group[face->cell] != number) continue;
     for (PetscInt d = 0; d < 2; ++d) v[d] = place[face->cell][d] + face->shift[d] - place[face->other][d];
     if (LamDot(v, v) < 1e-6 || (rank == 1 && PetscAbsReal(first[0] * v[1] - first[1] * v[0]) <= 1e-3)) continue;
     ++rank;
@@ -246,7 +276,7 @@ static PetscBool IsHeld(const LamMesh *mesh, PetscInt cell)
   return PETSC_FALSE;
 }
 
-static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
+static PetscErrorCode CountClusters(LamRVE rve, const PetscReal held[], LamResponse *response)
 {
   const LamContact *contact = rve->contact;
   const PetscInt cells = rve->mesh.cell_count;
@@ -256,15 +286,15 @@ static PetscErrorCode CountClusters(LamRVE rve, LamResponse *response)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(cells, &group, cells, &place, cells, &fixed));
-  response->cell_clusters = GroupCells(contact, cells, group, place);
+  response->cell_clusters = GroupCells(contact, held, cells, group, place);
   for (PetscInt c = 0; c < cells; ++c) fixed[c] = IsHeld(&rve->mesh, c);
   for (PetscInt f = 0; f < contact->face_count; ++f)
-    if (FaceIsClosed(contact, f)) fixed[contact->faces[f].cell] = fixed[contact->faces[f].other] = PETSC_TRUE;
+    if (FaceIsClosed(contact, held, f)) fixed[contact->faces[f].cell] = fixed[contact->faces[f].other] = PETSC_TRUE;
   response->percolating_directions = response->floating_cells = 0;
   for (PetscInt c = 0; c < cells; ++c) {
     response->floating_cells += !fixed[c];
     response->percolating_directions =
-        PetscMax(response->percolating_directions, Rank(contact, c, group, (const PetscReal(*)[2])place));
+        PetscMax(response->percolating_directions, Rank(contact, held, c, group, (const PetscReal(*)[2])place));
   }
   if (rve->micro.is_patch) response->percolating_directions = LAM_UNKNOWN_COUNT; /* there is no period */
   PetscCall(PetscFree3(group, place, fixed));
@@ -286,11 +316,15 @@ static PetscReal MinGap(PetscReal closed, const Sums *sums)
 
 PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  Sums sums = {
-      .max_gap = -PETSC_MAX_REAL, .named_gap = -PETSC_MAX_REAL, .min_gap = PETSC_MAX_REAL, .traction = LAM_NO_MEAN};
+  Sums sums = {.max_gap = -PETSC_MAX_REAL,
+               .named_gap = -PETSC_MAX_REAL,
+               .min_gap = PETSC_MAX_REAL,
+               .traction = LAM_NO_MEAN,
+               .shear = LAM_NO_MEAN};
   PetscReal length = 0.0, closed = 0.0, open = 0.0, gap = 0.0;
 
   PetscFunctionBeginUser;
+  PetscCall(LamLayerForcesCreate(rve, load, &sums.layer));
   for (PetscInt f = 0; f < rve->contact->face_count; ++f) PetscCall(AddFace(rve, load, f, &sums));
   for (PetscInt k = 0; k < 3; ++k) {
     const FamilySums *family = &sums.family[k];
@@ -314,12 +348,17 @@ PetscErrorCode LamContactIndicators(LamRVE rve, const LamLoad *load, LamResponse
   response->max_traction = LamLargestMeanValue(&sums.traction);
   PetscCall(PetscArraycpy(response->normal_place, sums.traction.place, 3));
   response->max_lamella_shear = 0.0; /* there is no friction */
+  if (rve->layer) {
+    response->max_lamella_shear = LamLargestMeanValue(&sums.shear);
+    PetscCall(PetscArraycpy(response->shear_place, sums.shear.place, 3));
+  }
   for (PetscInt i = 0; i < 3; ++i) {
     response->fabric[i] = length > 0.0 ? sums.fabric[i] / length : NAN;
     response->opening_moment[i] = length > 0.0 ? sums.jumps[i] / length : NAN;
   }
   response->zero_modes = rve->zero_modes;
-  PetscCall(CountClusters(rve, response));
+  PetscCall(CountClusters(rve, sums.layer.held, response));
+  PetscCall(LamLayerForcesDestroy(&sums.layer));
   PetscFunctionReturn(0);
 }
 

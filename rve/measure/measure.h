@@ -85,6 +85,16 @@ void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 /* ---- bonds.c ---- */
 /* Sets energies and broken fractions of tissue with a lamella; after LamHomogenise. */
 void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Forces per reference thickness at the points of the lamella, tension and the direction along the slave's wall being
+   positive, and the reference length about each hat that is not broken. Without a lamella all are NULL. */
+typedef struct {
+  PetscReal *normal, *shear; /* [point] */
+  PetscReal *held;           /* [hat] */
+} LamLayerForces;
+PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerForces *forces);
+PetscErrorCode LamLayerForcesDestroy(LamLayerForces *forces);
+/* Force of a face, whose points are force[], between two places, in edges, of the same edge. */
+PetscReal LamLayerForceBetween(const PetscReal force[], PetscReal a, PetscReal b);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop at positions y intersects itself or is inverted; -1: none. */

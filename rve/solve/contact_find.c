@@ -245,6 +245,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
     PetscCall(TryNear(rve, load, border, before, out));
     if (LamContactIsStable(out)) PetscFunctionReturn(0);
   }
+  if (rve->near_only) PetscFunctionReturn(0);
   for (PetscInt k = before->solved ? 0 : 1; k < 2 && !out->found && !rve->work.stopped; ++k) {
     if (border) border->load = guess;
     ok = PETSC_TRUE;

@@ -6,17 +6,12 @@
     defect = Psi_1 - Psi_0 - 1/2 (Psi,q_0 + Psi,q_1).(q_1 - q_0) < 0,     q = (F11, F12, F21, F22, F33, p, g).
   A large defect may also come from curvature. The interval is therefore bisected, and the half with the lower defect
   kept: a defect of curvature falls at least fourfold each time, that of a jump stays.
-
-  With a lamella the state depends on the way to it, and a jump that is not one breaks what would hold. There a
-  suspicious step is taken again in halves, and these again: the state is that at the end of them.
 */
 #include "solve.h"
 
-#define FARTHEST 0.25     /* change of a component of F, turgor or cohesion (C1 + C2) beyond which nothing is said */
-#define SUSPICIOUS 0.02   /* share of the work that a jump must lose to be looked for, ... */
-#define LEAST_ENERGY 1e-7 /* ... and C1 + C2: below it Psi has few digits */
+#define FARTHEST 0.25   /* change of a component of F, turgor or cohesion (C1 + C2) beyond which nothing is said */
+#define SUSPICIOUS 0.02 /* share of the work that a jump must lose to be looked for, ... */
 #define HALVINGS 4
-#define STAYS 0.5 /* share of the defect that is left of a jump */
 
 void LamKeepEnergy(const LamResponse *response, LamRVEState state)
 {
@@ -35,25 +30,29 @@ static PetscReal Change(const LamLoad *from, const LamLoad *to, PetscReal dq[7])
   return LamLargestEntry(7, dq);
 }
 
-/* NaN: unknown. work: sum of the absolute values of its parts. */
-static PetscReal Defect(const LamRVEState from, const LamRVEState to, PetscReal *work)
+LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to)
 {
-  PetscReal dq[7], defect = to->energy[0] - from->energy[0];
+  LamStepWork step = {0};
+  PetscReal dq[7];
 
-  *work = 0.0;
-  (void)Change(&from->load, &to->load, dq);
+  step.largest = Change(&from->load, &to->load, dq);
   for (PetscInt k = 0; k < 7; ++k) {
-    const PetscReal part = 0.5 * (from->energy[1 + k] + to->energy[1 + k]) * dq[k];
-
-    defect -= part;
-    *work += PetscAbsReal(0.5 * (to->energy[1 + k] - from->energy[1 + k]) * dq[k]);
+    step.work += 0.5 * (from->energy[1 + k] + to->energy[1 + k]) * dq[k];
+    step.turnover += PetscAbsReal(0.5 * (to->energy[1 + k] - from->energy[1 + k]) * dq[k]);
   }
-  return from->width == to->width || from->points ? defect : NAN;
+  step.defect = to->energy[0] - from->energy[0] - step.work;
+  return step;
 }
 
-static PetscBool IsSuspicious(PetscReal defect, PetscReal work)
+/* NaN: energies of different laws do not compare. */
+static PetscReal Defect(const LamRVEState from, const LamRVEState to)
 {
-  return (PetscBool)(defect < -PetscMax(LEAST_ENERGY, SUSPICIOUS * work));
+  return from->width == to->width ? LamStepWorkOf(from, to).defect : NAN;
+}
+
+static PetscBool IsSuspicious(const LamStepWork *step)
+{
+  return (PetscBool)(step->defect < -PetscMax(LAM_LEAST_LOSS, SUSPICIOUS * step->turnover));
 }
 
 /* Bisects between `low` and `high`; defect: in, of the interval; out, of the last half; NaN: a state was not found. */
@@ -66,7 +65,7 @@ static PetscErrorCode Bisect(LamRVE rve, LamRVEState low, LamRVEState high, Pets
   for (PetscInt k = 0; k < HALVINGS; ++k) {
     const LamLoad load = LamLoadBetween(&low->load, &high->load, 0.5);
     const LamWork work = rve->work;
-    PetscReal halves[2], unused;
+    PetscReal halves[2];
     LamResponse response;
 
     PetscCall(LamRVEStateCopy(low, middle));
@@ -75,8 +74,8 @@ static PetscErrorCode Bisect(LamRVE rve, LamRVEState low, LamRVEState high, Pets
     rve->work.factorisations += work.factorisations;
     *defect = NAN;
     if (response.status != LAM_CONVERGED) break;
-    halves[0] = Defect(low, middle, &unused);
-    halves[1] = Defect(middle, high, &unused);
+    halves[0] = Defect(low, middle);
+    halves[1] = Defect(middle, high);
     *defect = PetscMin(halves[0], halves[1]);
     PetscCall(LamRVEStateCopy(middle, halves[0] < halves[1] ? high : low));
   }
@@ -100,7 +99,7 @@ static PetscErrorCode Look(LamRVE rve, LamRVEState low, LamRVEState high, PetscR
 {
   const LamSharpness sharpness = rve->micro.sharpness;
   const PetscReal asked = rve->micro.contact_width, width = PetscMax(low->width, high->width);
-  PetscReal work;
+  LamStepWork step;
 
   PetscFunctionBeginUser;
   if (width > 0.0) {
@@ -109,100 +108,31 @@ static PetscErrorCode Look(LamRVE rve, LamRVEState low, LamRVEState high, PetscR
     PetscCall(MakeSmooth(rve, low));
     PetscCall(MakeSmooth(rve, high));
   }
-  *left = *defect = Defect(low, high, &work);
-  if (IsSuspicious(*defect, work)) PetscCall(Bisect(rve, low, high, left));
+  step = LamStepWorkOf(low, high);
+  *left = *defect = step.defect;
+  if (IsSuspicious(&step)) PetscCall(Bisect(rve, low, high, left));
   rve->micro.sharpness = sharpness;
   rve->micro.contact_width = asked;
   PetscFunctionReturn(0);
 }
 
-typedef struct {
-  PetscReal first; /* defect of the whole step */
-  PetscReal lost;  /* in jumps */
-  PetscInt iterations, factorisations;
-  LamResponse response; /* of the last state */
-} Retracing;
-
-/* Takes the step from `at` to a load, in halves while it is suspicious; on return `at` is the state there. */
-static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, PetscInt halvings, Retracing *r)
-{
-  const LamLoad start = at->load;
-  PetscReal defect, work;
-  LamRVEState end;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVEStateCreate(rve, &end));
-  PetscCall(LamRVEStateCopy(at, end));
-  PetscCall(LamRVESolve(rve, load, end, &r->response));
-  r->iterations += r->response.newton_iterations;
-  r->factorisations += r->response.factorisations;
-  defect = r->response.status == LAM_CONVERGED ? Defect(at, end, &work) : NAN;
-  if (IsSuspicious(defect, work) && halvings > 0) {
-    const LamLoad middle = LamLoadBetween(&start, load, 0.5);
-
-    PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
-    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, load, halvings - 1, r));
-  } else if (r->response.status == LAM_CONVERGED) {
-    if (defect < STAYS * r->first) r->lost -= defect;
-    PetscCall(LamRVEStateCopy(end, at));
-  }
-  PetscCall(LamRVEStateDestroy(&end));
-  PetscFunctionReturn(0);
-}
-
-/* Replaces a suspicious state of tissue with a lamella, and its response. */
-static PetscErrorCode RetraceStep(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response)
-{
-  const LamLoad middle = LamLoadBetween(&before->load, &state->load, 0.5);
-  const LamWork work = rve->work;
-  Retracing r = {.iterations = response->newton_iterations, .factorisations = response->factorisations};
-  PetscReal unused;
-
-  PetscFunctionBeginUser;
-  r.first = Defect(before, state, &unused);
-  PetscCall(Retrace(rve, before, &middle, HALVINGS - 1, &r));
-  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, before, &state->load, HALVINGS - 1, &r));
-  if (r.response.status == LAM_CONVERGED) {
-    PetscCall(LamRVEStateCopy(before, state));
-    *response = r.response;
-  } else {
-    PetscCall(LamTakeState(rve, state));
-    r.lost = -r.first;
-  }
-  rve->work.stopped = (PetscBool)(rve->work.stopped || work.stopped);
-  response->newton_iterations = r.iterations;
-  response->factorisations = r.factorisations;
-  response->jumped = (PetscBool)(r.lost > LEAST_ENERGY);
-  if (!response->jumped) PetscFunctionReturn(0);
-  response->energy_released = r.lost;
-  state->released += r.lost * rve->mesh.V0;
-  response->released = state->released / rve->mesh.V0;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response)
 {
-  PetscReal dq[7], work, defect = 0.0, left = 0.0;
+  const LamStepWork step = LamStepWorkOf(before, state);
+  PetscReal defect = 0.0, left = 0.0;
   LamRVEState high;
 
   PetscFunctionBeginUser;
   if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
-  if (Change(&before->load, &state->load, dq) > FARTHEST) PetscFunctionReturn(0);
-  defect = Defect(before, state, &work);
-  if (before->width == state->width && !IsSuspicious(defect, work)) PetscFunctionReturn(0);
-  if (rve->layer) {
-    rve->looks_back = PETSC_TRUE;
-    if (IsSuspicious(defect, work)) PetscCall(RetraceStep(rve, before, state, response));
-    rve->looks_back = PETSC_FALSE;
-    PetscFunctionReturn(0);
-  }
+  if (step.largest > FARTHEST) PetscFunctionReturn(0);
+  if (before->width == state->width && !IsSuspicious(&step)) PetscFunctionReturn(0);
   PetscCall(LamRVEStateCreate(rve, &high));
   PetscCall(LamRVEStateCopy(state, high));
   rve->looks_back = PETSC_TRUE;
   PetscCall(Look(rve, before, high, &defect, &left));
   rve->looks_back = PETSC_FALSE;
   PetscCall(LamRVEStateDestroy(&high));
-  if (defect < 0.0 && left <= STAYS * defect && left < -LEAST_ENERGY) {
+  if (defect < 0.0 && left <= LAM_JUMP_STAYS * defect && left < -LAM_LEAST_LOSS) {
     response->jumped = PETSC_TRUE;
     response->energy_released = -left;
   }

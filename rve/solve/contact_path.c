@@ -131,7 +131,7 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
   PetscCall(LamContactFind(rve, load, NULL, before, &out));
-  for (PetscInt k = before->solved ? 0 : 1; k < most && !out.found && !rve->work.stopped; ++k) {
+  for (PetscInt k = before->solved ? 0 : 1; k < most && !rve->near_only && !out.found && !rve->work.stopped; ++k) {
     PetscCall(k == 0 ? Walk(rve, at, load, &way, &out) : WalkFromRest(rve, at, load, &way, &out));
     if (out.found && !rve->layer) PetscCall(LamContactFinish(rve, load, NULL, &out));
   }

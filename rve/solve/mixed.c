@@ -98,13 +98,17 @@ static PetscErrorCode CheckStability(const LamStressControl *control, LamRespons
 static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                                  LamResponse *response)
 {
-  LamRVEState fast;
+  LamRVEState fast, before = NULL;
   LamLoad guess = *load;
   LamResponse safe;
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCreate(rve, &fast));
   PetscCall(LamRVEStateCopy(state, fast));
+  if (rve->layer) {
+    PetscCall(LamRVEStateCreate(rve, &before));
+    PetscCall(LamRVEStateCopy(state, before));
+  }
   PetscCall(LamMixedFast(rve, &guess, control, fast, response));
   if (LamResponseHasFields(response)) PetscCall(CheckStability(control, response));
   if (response->status != LAM_CONVERGED && !LamWasStopped(response)) {
@@ -120,6 +124,8 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
     response->factorisations = factorisations + safe.factorisations;
   }
   if (LamResponseHasFields(response)) PetscCall(LamRVEStateCopy(fast, state));
+  if (before) PetscCall(LamLayerStep(rve, before, PETSC_FALSE, state, response));
+  PetscCall(LamRVEStateDestroy(&before));
   PetscCall(LamRVEStateDestroy(&fast));
   PetscFunctionReturn(0);
 }

@@ -10,6 +10,8 @@
   saddle is left along its softest mode. If a step is short, the fast tier is tried. So the tissue snaps to another
   stable state if there is one. Beyond a limit load there is none, and F diverges; the bracket of (i) is then reported.
 
+  The iterates of a descent leave no damage in a lamella: all have the history of the state that it started from.
+
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
 */
 #include "mixed.h"
@@ -37,6 +39,7 @@ typedef struct {
 
 typedef struct {
   LamRVE rve;
+  LamRVEState history; /* of a descent: that of the state it starts from; NULL: each state has its own */
   const LamStressControl *control;
   const LamLoad *load;
   Iterate now, next;
@@ -75,6 +78,7 @@ static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
   PetscFunctionBeginUser;
   if (s->stopped) PetscFunctionReturn(0);
   PetscCall(LamRVEStateCopy(from, s->next.state));
+  if (s->history) PetscCall(LamCopyHistory(s->history, s->next.state));
   PetscCall(LamRVESolve(s->rve, load, s->next.state, &s->next.response));
   Count(s, &s->next.response);
   if (LamResponseHasFields(&s->next.response)) PetscCall(LamMixedLook(s->control, &s->next.response, &s->next.view));
@@ -88,6 +92,7 @@ static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressCo
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCopy(s->now.state, s->next.state));
+  if (s->history) PetscCall(LamCopyHistory(s->history, s->next.state));
   PetscCall(LamMixedFast(s->rve, &load, control, s->next.state, &s->next.response));
   Count(s, &s->next.response);
   PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
@@ -234,6 +239,11 @@ static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState fr
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   s->most = s->iterations + BUDGET;
+  if (s->rve->layer) {
+    PetscCall(LamRVEStateCreate(s->rve, &s->history));
+    PetscCall(LamRVEStateCopy(from, s->history));
+    s->rve->looks_back = PETSC_TRUE;
+  }
   PetscCall(SolveAt(s, load, from));
   if (LamResponseHasFields(&s->next.response)) {
     Swap(s);
@@ -241,6 +251,8 @@ static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState fr
   } else {
     PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
   }
+  s->rve->looks_back = PETSC_FALSE;
+  PetscCall(LamRVEStateDestroy(&s->history));
   PetscFunctionReturn(0);
 }
 

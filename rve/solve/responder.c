@@ -3,7 +3,8 @@
 
   Each point has two states: the accepted one of the last load step, and the latest solution, which is nearer to the
   next query. A query starts from the latest one, unless that has left the accepted branch (by buckling): an iterate of
-  the macroscale Newton must not select the branch. A query without a point, or of one without stored states, starts
+  the macroscale Newton must not select the branch; nor may it leave damage: with a lamella every query starts from the
+  accepted state. A query without a point, or of one without stored states, starts
   from the reference state. After sealing, each point keeps the water of its accepted state.
 
   A uniformly inflated body queries the same load at all its points. A query with the same load and initial state as the
@@ -91,7 +92,8 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
     if (point >= 0 && point < direct->points) {
       state = direct->latest[point];
-      if (state->branch != direct->accepted[point]->branch) PetscCall(LamRVEStateCopy(direct->accepted[point], state));
+      if (direct->rve->layer || state->branch != direct->accepted[point]->branch)
+        PetscCall(LamRVEStateCopy(direct->accepted[point], state));
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }

@@ -322,7 +322,8 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
   const PetscBool looks =
-      (PetscBool)(((rve->wanted & LAM_WANT_JUMPS) || rve->layer) && rve->contact && state->solved && !rve->looks_back);
+      (PetscBool)((rve->layer || ((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved)) &&
+                  !rve->looks_back);
   LamRVEState before = NULL;
 
   PetscFunctionBeginUser;
@@ -339,7 +340,8 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
-  if (looks) PetscCall(LamSeeJump(rve, before, state, response));
+  if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, PETSC_TRUE, state, response));
+  if (looks && !rve->layer) PetscCall(LamSeeJump(rve, before, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);

@@ -8,6 +8,7 @@
     sharpen.c                             equilibrium with the exact law of contact, from a state near it
     contact_start.c contact_find.c contact_path.c     contact: initial guesses, a state at a load, load paths
     contact_jump.c                        whether the branch of the state before has ended
+    lamella_step.c                        work and jumps of steps that break the lamella
     nested.c                              initial guess from the solution on a coarser mesh
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
     estimate.c                            error estimate of P from a finer mesh
@@ -97,8 +98,22 @@ PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState
 /* ---- contact_jump.c ---- */
 /* Stores energy and first derivatives of a response with fields in its state. */
 void LamKeepEnergy(const LamResponse *response, LamRVEState state);
+/* Between two states, per V0: work of the derivatives of Psi by the trapezoidal rule, the sum of the absolute values of
+   what their changes contribute to it, change of Psi less work, and the largest change of a component of the load. */
+typedef struct {
+  PetscReal work, turnover, defect, largest;
+} LamStepWork;
+LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to);
+#define LAM_LEAST_LOSS 1e-7 /* C1 + C2: below it Psi has few digits */
+#define LAM_JUMP_STAYS 0.5  /* share of the defect that halving the step leaves of a jump; of curvature less */
 /* Sets jumped and energy_released of the response of `state`, which was solved from `before`. */
 PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response);
+
+/* ---- lamella_step.c ---- */
+/* Completes a step of tissue with a lamella from `before`: work and jumps, in state and response. retrace: a suspicious
+   step is taken again in smaller ones, which replace `state` and its response. */
+PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, LamRVEState state,
+                            LamResponse *response);
 
 /* ---- nested.c ---- */
 /* Whether a solve from `state` should start from the solution on a coarser mesh. */
@@ -126,5 +141,7 @@ PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamW
 #define LAM_REFERENCE_LOAD ((LamLoad){.F = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}})
 /* Stores the solution held by rve in `state`. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
+/* Copies the history of the lamella alone. */
+PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to);
 
 #endif

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 11
+#define MOST_PARTS 12
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -24,7 +24,8 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {s->energy, s->multipliers ? sizeof(s->energy) : 0},
                                 {s->history, (size_t)s->points * sizeof(*s->history)},
                                 {&s->spent, s->points ? sizeof(s->spent) : 0},
-                                {&s->released, s->points ? sizeof(s->released) : 0}};
+                                {&s->released, s->points ? sizeof(s->released) : 0},
+                                {&s->work, s->points ? sizeof(s->work) : 0}};
   PetscInt count = 0;
 
   for (PetscInt k = 0; k < MOST_PARTS; ++k)
@@ -78,6 +79,16 @@ PetscErrorCode LamRVEStateCopy(LamRVEState from, LamRVEState to)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(to->history, from->history, to->points));
+  to->spent = from->spent;
+  to->released = from->released;
+  to->work = from->work;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
 {
   PetscFunctionBeginUser;
@@ -109,7 +120,12 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->width = 0.0;
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = NAN;
   for (PetscInt p = 0; p < state->points; ++p) state->history[p] = LAM_UNDAMAGED;
-  state->spent = state->released = 0.0;
+  state->spent = state->released = state->work = 0.0;
+  if (!rve->layer) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = 0.0; /* it is the state at its load */
+  LamLumenAreas(rve, state->y, rve->seal.area);
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c)
+    state->energy[6] -= LamTurgorFactor(rve, c) * rve->seal.area[c] / rve->mesh.V0;
   PetscFunctionReturn(0);
 }
 

@@ -1,0 +1,122 @@
+/*
+  Steps of tissue with a lamella: their work, and where they jump.
+
+  A state depends on the way to it, and a solver that leaves the branch of the state before, where that has not ended,
+  breaks what would have held. Energy tells: on a branch the change of Psi is the work of its derivatives, and a jump
+  loses what is missing (contact_jump.c).
+
+  Method. A suspicious step is taken again in halves, and these again: on the branch of the exact law as far as it goes,
+  so that a jump is taken once, in the last and smallest part. The state is that at the end of them; what they lose is
+  `released`. Work is summed over the parts, so that
+
+    work = stored + dissipated + released
+
+  holds to second order in the step but for the part with the jump, which is 2^-HALVINGS of it.
+*/
+#include "solve.h"
+
+#define HALVINGS 6
+/* A jump loses at least these shares of the energy dissipated in the step and of its turnover: less is curvature, in
+   nine of ten suspicious steps of random programs. */
+#define LOST 0.03
+#define LOST_TURNOVER 0.15
+
+static PetscBool MayHaveJumped(const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+{
+  return (PetscBool)(-step->defect > LAM_LEAST_LOSS && -step->defect > LOST * (to->spent - from->spent) &&
+                     -step->defect > LOST_TURNOVER * step->turnover);
+}
+
+typedef struct {
+  PetscReal first; /* defect of the whole step */
+  PetscReal lost;  /* in jumps */
+  PetscInt iterations, factorisations;
+  LamResponse response; /* of the last state */
+} Retracing;
+
+/* Takes the step from `at` to a load, in halves while it jumps; on return `at` is the state there. */
+static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, PetscInt halvings, Retracing *r)
+{
+  const LamLoad middle = LamLoadBetween(&at->load, load, 0.5);
+  PetscBool solved, jumps;
+  LamRVEState end;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &end));
+  PetscCall(LamRVEStateCopy(at, end));
+  rve->near_only = (PetscBool)(halvings > 0 && at->solved && at->width == 0.0);
+  PetscCall(LamRVESolve(rve, load, end, &r->response));
+  solved = (PetscBool)(r->response.status == LAM_CONVERGED);
+  jumps = rve->near_only;
+  rve->near_only = PETSC_FALSE;
+  r->iterations += r->response.newton_iterations;
+  r->factorisations += r->response.factorisations;
+  if (solved) {
+    const LamStepWork step = LamStepWorkOf(at, end);
+
+    jumps = MayHaveJumped(at, end, &step);
+    if (!jumps || halvings == 0) {
+      if (jumps && step.defect < LAM_JUMP_STAYS * r->first) r->lost -= step.defect;
+      end->work = at->work + step.work;
+      PetscCall(LamRVEStateCopy(end, at));
+    }
+  }
+  if (jumps && halvings > 0 && !rve->work.stopped) {
+    PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
+    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, load, halvings - 1, r));
+  }
+  PetscCall(LamRVEStateDestroy(&end));
+  PetscFunctionReturn(0);
+}
+
+/* Replaces a state and its response by those at the end of smaller steps; where these fail, it stays. */
+static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, PetscReal defect, LamRVEState state,
+                                LamResponse *response, PetscReal *lost)
+{
+  const LamLoad middle = LamLoadBetween(&before->load, &state->load, 0.5);
+  Retracing r = {
+      .first = defect, .iterations = response->newton_iterations, .factorisations = response->factorisations};
+  LamRVEState at;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(rve, &at));
+  PetscCall(LamRVEStateCopy(before, at));
+  rve->looks_back = PETSC_TRUE;
+  PetscCall(Retrace(rve, at, &middle, HALVINGS - 1, &r));
+  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &state->load, HALVINGS - 1, &r));
+  rve->looks_back = PETSC_FALSE;
+  if (r.response.status == LAM_CONVERGED) {
+    PetscCall(LamRVEStateCopy(at, state));
+    *response = r.response;
+    *lost = r.lost;
+  } else {
+    PetscCall(LamTakeState(rve, state));
+    *lost = -defect;
+  }
+  response->newton_iterations = r.iterations;
+  response->factorisations = r.factorisations;
+  PetscCall(LamRVEStateDestroy(&at));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, LamRVEState state, LamResponse *response)
+{
+  const LamStepWork step = LamStepWorkOf(before, state);
+  PetscReal lost = 0.0;
+
+  PetscFunctionBeginUser;
+  if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
+  state->work = before->work + step.work;
+  if (MayHaveJumped(before, state, &step)) {
+    lost = -step.defect;
+    if (retrace) PetscCall(TakeAgain(rve, before, step.defect, state, response, &lost));
+  }
+  response->jumped = (PetscBool)(lost > LAM_LEAST_LOSS);
+  if (response->jumped) {
+    response->energy_released = lost;
+    state->released += lost;
+  }
+  response->released = state->released;
+  response->work = state->work;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,275 @@
+/* Tissue whose lamella breaks for good: tangent, ledger of energies, limits and history. */
+#include "support/lamella_tissue.h"
+#include "support/rve_fixture.h"
+#include "solve.h"
+
+static const int components[5] = {0, 1, 3, 4, 8};
+
+/* ---- tangent ---- */
+
+/* From the same history: fourth-order differences of the stress against the tangent, and the tangent's symmetry. */
+static void CheckTangent(Specimen *s, const LamLoad *load)
+{
+  const double h = 1e-5;
+  OWNED(LamRVEState, LamRVEStateDestroy) end = NewState(s->rve);
+  LamResponse r, q;
+  double largest = 0.0;
+
+  CHECK(LamRVEStateCopy(s->state, end));
+  CHECK(LamRVESolve(s->rve, load, end, &r));
+  assert_int_equal(r.status, LAM_CONVERGED);
+  assert_near(r.contact_width, 0.0, 0.0);
+  for (int k = 0; k < 5; k++) largest = fmax(largest, fabs(r.tangent[10 * components[k]]));
+  for (int k = 0; k < 5; k++) {
+    double difference[9] = {0};
+
+    for (int m = -2; m <= 2; m++) {
+      const double weight[5] = {1.0 / 12, -8.0 / 12, 0, 8.0 / 12, -1.0 / 12};
+      LamLoad moved = *load;
+
+      if (m == 0) continue;
+      moved.F[components[k]] += m * h;
+      CHECK(LamRVEStateCopy(s->state, end));
+      CHECK(LamRVESolve(s->rve, &moved, end, &q));
+      assert_int_equal(q.status, LAM_CONVERGED);
+      for (int i = 0; i < 9; i++) difference[i] += weight[m + 2] * q.P[i] / h;
+    }
+    for (int l = 0; l < 5; l++) {
+      const double entry = r.tangent[9 * components[l] + components[k]];
+
+      assert_near(difference[components[l]], entry, 1e-6 * largest);
+      assert_near(r.tangent[9 * components[k] + components[l]], entry, 1e-10 * largest);
+    }
+  }
+}
+
+static void FollowAndCheck(LamSoftening softening, double shear_energy, double turgor)
+{
+  LamMicrostructure micro = LamellaTissue(0.2);
+  double work = 0;
+  LamLoad load;
+  Specimen s;
+
+  micro.lamella.softening = softening;
+  micro.lamella.shear_energy *= shear_energy;
+  CHECK(SpecimenCreate(&micro, &s));
+  load = PlaneLoad(1.003, 0.002, 0, 1.006, turgor); /* undamaged but at corners */
+  CHECK(SpecimenFollow(&s, &load, 1, &work));
+  load = PlaneLoad(1.004, 0.002, 0, 1.007, turgor);
+  CheckTangent(&s, &load);
+  load = PlaneLoad(1.05, 0.02, 0, 1.13, turgor); /* on the softening branch */
+  CHECK(SpecimenFollow(&s, &load, 5, &work));
+  assert_true(s.response.dissipated > 1e-4);
+  load = PlaneLoad(1.051, 0.021, 0, 1.134, turgor);
+  CheckTangent(&s, &load);
+  load = PlaneLoad(1.04, 0.015, 0.01, 1.1, turgor); /* unloading */
+  CheckTangent(&s, &load);
+}
+
+TEST_IS(TangentIsThatOfTheStepBilinear, FollowAndCheck(LAM_SOFTENING_BILINEAR, 1.0, 0.0));
+TEST_IS(TangentIsThatOfTheStepUnderTurgor, FollowAndCheck(LAM_SOFTENING_BILINEAR, 1.0, 0.05));
+TEST_IS(TangentIsThatOfTheStepExponentialInMixedMode, FollowAndCheck(LAM_SOFTENING_EXPONENTIAL, 3.0, 0.0));
+
+/* ---- energies ---- */
+
+/* Imbalance of the ledger over a cycle through damage and back, in n steps each way: work - stored - dissipated. */
+static double Imbalance(int n, double *turnover)
+{
+  const LamMicrostructure micro = LamellaTissue(1.0);
+  const LamLoad far = PlaneLoad(1.06, 0.1, 0, 1.1, 0), rest = PlaneLoad(1, 0, 0, 1, 0);
+  double work = 0, start, imbalance;
+  Specimen s;
+
+  CHECK(SpecimenCreate(&micro, &s));
+  start = s.response.stored;
+  CHECK(SpecimenFollow(&s, &far, n, &work));
+  CHECK(SpecimenFollow(&s, &rest, n, &work));
+  assert_true(s.response.dissipated > 1e-4);
+  imbalance = work - (s.response.stored - start) - s.response.dissipated - s.response.released;
+  *turnover = s.response.dissipated;
+  CHECK(SpecimenDestroy(&s));
+  return fabs(imbalance);
+}
+
+TEST(LedgerClosesToSecondOrderInTheStep)
+{
+  double turnover;
+  const double coarse = Imbalance(8, &turnover), fine = Imbalance(32, &turnover);
+
+  assert_true(fine < coarse / 10.0); /* a sixteenth, and kinks where the lamella begins to be damaged */
+  assert_true(fine < 1e-3 * turnover);
+}
+
+TEST(EnergyOfATornCellIsWorkAndLoss)
+{
+  const LamMicrostructure micro = LamellaTissue(0.05);
+  const double faces = 2.0 * sqrt(3.0) * micro.lamella.energy / (2.0 * sqrt(3.0)); /* 3 faces of 2/sqrt(3) over V0 */
+  const LamLoad far = PlaneLoad(1.4, 0, 0, 1.4, 0);
+  double work = 0;
+  Specimen s;
+
+  CHECK(SpecimenCreate(&micro, &s));
+  CHECK(SpecimenFollow(&s, &far, 80, &work));
+  assert_near(s.response.broken_fraction, 1.0, 1e-12);
+  assert_near(s.response.dissipated, faces, 1e-12);
+  assert_near(s.response.P[0], 0.0, 1e-9);
+  assert_near(s.response.stored, 0.0, 1e-9);
+  assert_true(s.response.released > 0.0);
+  assert_near(work, s.response.dissipated + s.response.released, 1e-3 * work);
+  CHECK(SpecimenDestroy(&s));
+}
+
+/* ---- limits ---- */
+
+static LamResponse SolveAfter(LamMicrostructure micro, LamLoad load)
+{
+  micro.along = 6;
+  micro.through = 2;
+  return SolveTissue(&micro, load);
+}
+
+TEST(StiffLamellaTendsToBondedTissue)
+{
+  const LamLoad load = PlaneLoad(1.05, 0.1, 0, 1.0, 0.1);
+  LamMicrostructure micro = LamellaTissue(1e6);
+  double error[2];
+  LamResponse bonded;
+
+  micro.interface = LAM_INTERFACE_BONDED;
+  bonded = SolveAfter(micro, load);
+  micro.interface = LAM_INTERFACE_LAMELLA;
+  micro.lamella.strength = micro.lamella.shear_strength = 1e4;
+  for (int k = 0; k < 2; k++) {
+    LamResponse r;
+
+    micro.lamella.stiffness = k ? 1e5 : 1e4;
+    r = SolveAfter(micro, load);
+    assert_int_equal(r.status, LAM_CONVERGED);
+    error[k] = StressError(r.P, bonded.P);
+  }
+  assert_true(error[0] < 1e-3);
+  assert_true(error[1] < 0.15 * error[0]);
+}
+
+/* The paper's cohesion g: strength g, no shear, without end. */
+TEST(EndlessLamellaWithoutShearTendsToCohesion)
+{
+  LamLoad load = PlaneLoad(1.25, 0.1, 0, 1.2, 0.1);
+  LamMicrostructure micro = LamellaTissue(1e8);
+  double error[2];
+  LamResponse contact;
+
+  micro.interface = LAM_INTERFACE_CONTACT;
+  load.cohesion = 0.05;
+  contact = SolveAfter(micro, load);
+  assert_int_equal(contact.status, LAM_CONVERGED);
+  micro.interface = LAM_INTERFACE_LAMELLA;
+  micro.lamella.strength = load.cohesion;
+  micro.lamella.shear_strength = 0.0;
+  micro.lamella.energy = micro.lamella.shear_energy = 1e6;
+  load.cohesion = 0.0;
+  for (int k = 0; k < 2; k++) {
+    LamResponse r;
+
+    micro.lamella.stiffness = k ? 1e4 : 1e3;
+    r = SolveAfter(micro, load);
+    assert_int_equal(r.status, LAM_CONVERGED);
+    error[k] = StressError(r.P, contact.P);
+  }
+  assert_true(error[1] < 1e-3);
+  print_message("cohesion limit %g %g\n", error[0], error[1]);
+}
+
+TEST(BrokenLamellaIsContactWithoutCohesion)
+{
+  const LamLoad load = PlaneLoad(0.98, 0.15, 0, 1.0, 0.1);
+  LamMicrostructure micro = LamellaTissue(1.0);
+  LamResponse contact, broken;
+
+  micro.interface = LAM_INTERFACE_CONTACT;
+  contact = SolveAfter(micro, load);
+  micro.interface = LAM_INTERFACE_LAMELLA;
+  micro.lamella.face_strength[0] = micro.lamella.face_strength[1] = micro.lamella.face_strength[2] = 0.0;
+  broken = SolveAfter(micro, load);
+  assert_int_equal(broken.status, LAM_CONVERGED);
+  assert_true(StressError(broken.P, contact.P) < 1e-3);
+  assert_true(isnan(broken.broken_fraction));
+}
+
+/* ---- history ---- */
+
+TEST(FailedAndRejectedStatesLeaveNoDamage)
+{
+  const LamMicrostructure micro = LamellaTissue(0.2);
+  const LamLoad near = PlaneLoad(1.02, 0, 0, 1.02, 0), far = PlaneLoad(1.2, 0, 0, 1.2, 0);
+  const PetscInt points[1] = {0};
+  LamResponder responder;
+  LamResponse straight, after;
+  LamRVE rve = NewRVE(&micro);
+
+  CHECK(LamRVEResponderCreate(rve, 1, &responder));
+  CHECK(LamResponderRespond(responder, 1, &near, points, &straight));
+  CHECK(LamResponderRespond(responder, 1, &far, points, &after));
+  assert_true(after.broken_fraction > 0.5);
+  CHECK(LamResponderRespond(responder, 1, &near, points, &after));
+  assert_near(after.P[0], straight.P[0], 1e-9);
+  assert_near(after.dissipated, straight.dissipated, 1e-12);
+  CHECK(LamResponderRespond(responder, 1, &far, points, &after));
+  CHECK(LamResponderAccept(responder));
+  CHECK(LamResponderRespond(responder, 1, &near, points, &after));
+  assert_true(after.broken_fraction > 0.5);
+  assert_true(fabs(after.P[0]) < 0.5 * straight.P[0]);
+  CHECK(LamResponderDestroy(&responder));
+  CHECK(LamRVEDestroy(&rve));
+}
+
+TEST(PackedHistoryGoesOnBitForBit)
+{
+  const LamMicrostructure micro = LamellaTissue(0.2);
+  const LamLoad first = PlaneLoad(1.05, 0.02, 0, 1.1, 0), second = PlaneLoad(1.06, 0.05, 0, 1.12, 0);
+  LamRVE rve = NewRVE(&micro);
+  OWNED(LamRVEState, LamRVEStateDestroy) a = NewState(rve);
+  OWNED(LamRVEState, LamRVEStateDestroy) b = NewState(rve);
+  LamResponse ra, rb;
+  size_t size;
+  char *bytes;
+
+  CHECK(LamRVESolve(rve, &first, a, &ra));
+  CHECK(LamRVEStateSize(a, &size));
+  CHECK(PetscMalloc1(size, &bytes));
+  CHECK(LamRVEStatePack(a, bytes));
+  CHECK(LamRVEStateUnpack(bytes, b));
+  CHECK(LamRVESolve(rve, &second, a, &ra));
+  CHECK(LamRVESolve(rve, &second, b, &rb));
+  assert_true(ra.dissipated > 0.0);
+  assert_memory_equal(ra.P, rb.P, sizeof(ra.P));
+  assert_memory_equal(&ra.dissipated, &rb.dissipated, sizeof(ra.dissipated));
+  CHECK(PetscFree(bytes));
+  CHECK(LamRVEDestroy(&rve));
+}
+
+/* A second loading follows the first unloading, below what the virgin tissue bears. */
+TEST(SecondLoadingRemembers)
+{
+  const LamMicrostructure micro = LamellaTissue(0.5);
+  const LamLoad far = PlaneLoad(1.1, 0, 0, 1.1, 0), half = PlaneLoad(1.05, 0, 0, 1.05, 0),
+                rest = PlaneLoad(1, 0, 0, 1, 0);
+  double work = 0, virgin, unloading, spent;
+  Specimen s;
+
+  CHECK(SpecimenCreate(&micro, &s));
+  CHECK(SpecimenFollow(&s, &half, 5, &work));
+  virgin = s.response.P[0];
+  CHECK(SpecimenFollow(&s, &far, 5, &work));
+  spent = s.response.dissipated;
+  CHECK(SpecimenFollow(&s, &half, 5, &work));
+  unloading = s.response.P[0];
+  CHECK(SpecimenFollow(&s, &rest, 5, &work));
+  CHECK(SpecimenFollow(&s, &half, 5, &work));
+  assert_true(unloading < 0.9 * virgin);
+  assert_near(s.response.P[0], unloading, 1e-8);
+  assert_near(s.response.dissipated, spent, 1e-12);
+  CHECK(SpecimenDestroy(&s));
+}
+
+TEST_GROUP(.petsc = 1);
