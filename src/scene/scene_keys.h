@@ -76,9 +76,9 @@ typedef struct {
   PetscInt count;
 } LamKeyTable;
 
-extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamTissueKeys, LamStrengthKeys, LamLoadKeys,
-    LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys, LamRegionKeys, LamMapKeys,
-    LamProcessKeys;
+extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamInterfaceKeys, LamTissueKeys, LamStrengthKeys,
+    LamLoadKeys, LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys, LamRegionKeys,
+    LamMapKeys, LamProcessKeys;
 
 /* Key i = 0, 1, ... of all tables; NULL after the last one. */
 const LamKey *LamKeyAt(PetscInt i);
@@ -135,12 +135,16 @@ PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 /* scene_cells.c, part of the RVE: variation between cells. */
 #define LAM_MAX_CELLS 64 /* in one direction */
 PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene);
-/* Rejects a clearance, given at the node, that leaves a cell no lumen. */
-PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro);
 /* True if only cohesion holds some cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* Checks the rest of a complete scene for compatibility with a patch. */
 PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene);
+
+/* scene_interface.c, part of the RVE, after its cells. */
+PetscErrorCode LamSceneBuildInterface(const LamNode *root, LamScene *scene);
+/* Rejects a clearance, given at the node, that leaves a cell no lumen. */
+PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro);
+
 /*
   Reads the wall of a map. Missing values are those of `own`, with the bulk modulus in proportion to C1 + C2; `own`
   NULL: the defaults of the keys.
