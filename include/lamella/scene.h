@@ -467,11 +467,13 @@ typedef enum {
   LAM_DIMENSION_TEMPERATURE,
   LAM_DIMENSION_RATE,
   LAM_DIMENSION_MOLAR_ENERGY,
-  LAM_DIMENSION_PERMEABILITY
+  LAM_DIMENSION_PERMEABILITY,
+  LAM_DIMENSION_AREAL_ENERGY,
+  LAM_DIMENSION_STIFFNESS
 } LamDimension;
 
 /*
-  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa). PETSC_ERR_USER_INPUT, with the
+  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa, J/m2, Pa/m). PETSC_ERR_USER_INPUT, with the
   reason, if the unit is missing, unknown or of another dimension, or the number is not finite.
 */
 LAM_EXPORT PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);

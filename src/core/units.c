@@ -11,10 +11,11 @@
 #include <string.h>
 #include <udunits2.h>
 
-const char *const LamDimensionNames[] = {"length",      "stress", "angle",        "time",
-                                         "temperature", "rate",   "molar energy", "permeability"};
-const char *const LamDimensionExamples[] = {"75 um",   "0.1 MPa",  "30 deg",    "2 h",
-                                            "20 degC", "0.1 /day", "60 kJ/mol", "1e-7 m/s/MPa"};
+const char *const LamDimensionNames[] = {
+    "length",          "stress",           "angle", "time", "temperature", "rate", "molar energy", "permeability",
+    "energy per area", "stress per length"};
+const char *const LamDimensionExamples[] = {"75 um",    "0.1 MPa",   "30 deg",       "2 h",     "20 degC",
+                                            "0.1 /day", "60 kJ/mol", "1e-7 m/s/MPa", "1 J/m^2", "1000 MPa/mm"};
 
 enum { BASE_UNITS = 6 };
 static const char *const base_symbols[BASE_UNITS] = {"m", "kg", "s", "rad", "K", "mol"};
@@ -27,6 +28,8 @@ static const int dimension_powers[][BASE_UNITS] = {
     [LAM_DIMENSION_RATE] = {0, 0, -1, 0, 0, 0},
     [LAM_DIMENSION_MOLAR_ENERGY] = {2, 1, -2, 0, 0, -1},
     [LAM_DIMENSION_PERMEABILITY] = {2, -1, 1, 0, 0, 0}, /* m/s per Pa */
+    [LAM_DIMENSION_AREAL_ENERGY] = {0, 1, -2, 0, 0, 0},
+    [LAM_DIMENSION_STIFFNESS] = {-2, 1, -2, 0, 0, 0},
 };
 
 /* The units database: read at first use (which takes some milliseconds), freed at exit. */
@@ -183,9 +186,9 @@ static PetscErrorCode UnitRead(const char text[], UnitParts *parts, PetscBool *k
 /* The usual unit that differs only by capital letters; NULL: none. */
 static const char *UnitMeant(const char unit[])
 {
-  static const char *const usual[] = {"Pa",    "kPa", "MPa",  "GPa", "um",   "mm",     "nm", "cm",
-                                      "deg",   "rad", "min",  "h",   "day",  "degC",   "K",  "kJ/mol",
-                                      "J/mol", "/s",  "/min", "/h",  "/day", "m/s/MPa"};
+  static const char *const usual[] = {"Pa",   "kPa", "MPa",  "GPa",     "um",    "mm",   "nm",     "cm",    "deg",
+                                      "rad",  "min", "h",    "day",     "degC",  "K",    "kJ/mol", "J/mol", "/s",
+                                      "/min", "/h",  "/day", "m/s/MPa", "J/m^2", "J/m2", "mJ/m^2", "N/m",   "MPa/mm"};
 
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(usual); k++)
     if (!strcasecmp(usual[k], unit)) return usual[k];

@@ -55,7 +55,8 @@ static PetscErrorCode ReadDefault(const LamKey *key, LamValue *value)
   PetscFunctionReturn(0);
 }
 
-/* A component in the struct's units: um in apothems, mm in macro lengths, stresses in C1 + C2, the rest in SI. */
+/* A component in the struct's units: um in apothems, mm in macro lengths, stresses in C1 + C2, what is made of these
+   likewise, the rest in SI. */
 static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const LamScales *scales, PetscReal si,
                                 PetscReal *number)
 {
@@ -67,6 +68,10 @@ static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const La
     PetscCall(LamSceneScale(node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
   if (key->dimension == LAM_DIMENSION_PERMEABILITY)
     PetscCall(LamSceneScale(node, si * scales->stress, scales->length, number));
+  if (key->dimension == LAM_DIMENSION_AREAL_ENERGY)
+    PetscCall(LamSceneScale(node, si, scales->stress * scales->length, number));
+  if (key->dimension == LAM_DIMENSION_STIFFNESS)
+    PetscCall(LamSceneScale(node, si * scales->length, scales->stress, number));
   PetscFunctionReturn(0);
 }
 

@@ -112,8 +112,11 @@ void LamKeyBoundsText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 /* Expected text of one component: "bonded or contact", "a stress with its unit, larger than 0 MPa". */
 static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
 {
-  static const char *const articles[] = {"a length",      "a stress", "an angle",       "a time",
-                                         "a temperature", "a rate",   "a molar energy", "a permeability"};
+  static const char *const articles[] = {"a length",           "a stress",
+                                         "an angle",           "a time",
+                                         "a temperature",      "a rate",
+                                         "a molar energy",     "a permeability",
+                                         "an energy per area", "a stress per length"};
   static const char *const phrases[] = {LAM_KEY_TYPES(TYPE_PHRASE)};
   const char *what = key->unit ? articles[key->dimension] : phrases[key->type];
   char bounds[LAM_KEY_TEXT_LENGTH];

@@ -32,7 +32,11 @@ static const char *TypeText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
   size_t used = 0;
 
   if (key->type != LAM_KEY_NAME) {
-    snprintf(text, LAM_KEY_TEXT_LENGTH, key->size ? "[%s, %s]" : "%s", type, type);
+    snprintf(text, LAM_KEY_TEXT_LENGTH,
+             key->size == 3 ? "[%s, %s, %s]"
+             : key->size    ? "[%s, %s]"
+                            : "%s",
+             type, type, type);
     return text;
   }
   for (PetscInt i = 0; i < key->name_count && used < LAM_KEY_TEXT_LENGTH; i++) {

@@ -75,6 +75,23 @@ TEST(energies_and_permeabilities_are_converted)
   AssertSI("2 um s-1 bar-1", LAM_DIMENSION_PERMEABILITY, 2e-11);
 }
 
+TEST(energies_per_area_and_stresses_per_length_are_converted)
+{
+  AssertSI("1.5 J/m^2", LAM_DIMENSION_AREAL_ENERGY, 1.5);
+  AssertSI("20 mJ/m2", LAM_DIMENSION_AREAL_ENERGY, 0.02);
+  AssertSI("0.001 N/mm", LAM_DIMENSION_AREAL_ENERGY, 1);
+  AssertSI("2 MPa um", LAM_DIMENSION_AREAL_ENERGY, 2);
+  AssertSI("1e3 MPa/mm", LAM_DIMENSION_STIFFNESS, 1e12);
+  AssertSI("2 N/mm^3", LAM_DIMENSION_STIFFNESS, 2e9);
+}
+
+TEST(energies_per_area_are_no_stresses)
+{
+  AssertRefused("1 J/m^3", LAM_DIMENSION_AREAL_ENERGY, "is not a unit of energy per area");
+  AssertRefused("1 j/m^2", LAM_DIMENSION_AREAL_ENERGY, "did you mean J/m^2?");
+  AssertRefused("1 MPa", LAM_DIMENSION_STIFFNESS, "write a stress per length with its unit, such as 1000 MPa/mm");
+}
+
 TEST(an_offset_belongs_to_temperatures_alone)
 {
   AssertRefused("1 kJ/degC", LAM_DIMENSION_MOLAR_ENERGY, "is not a unit of molar energy");
