@@ -107,6 +107,27 @@ typedef struct {
 */
 LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
 
+/* ---- of tissue with law `lamella` (src/core/lamella.c) ---- */
+
+/* The stiffness, in (C1 + C2)/a, above which the traction of the lamella can fall without a jump: strength^2/(2 energy),
+   the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
+LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
+#define LAM_LAMELLA_STIFFEST 1e7 /* (C1 + C2)/a: rounding of a coordinate is then a traction of about 1e-9 (C1 + C2) */
+/* The stiffness where none is given: the lamella adds 0.1 % to the strain of tissue, or less where 50 times the least
+   stiffness is more; at most the stiffest. */
+LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
+/* What the lamella adds to the strain of tissue at rest, as a share of it: a stress P opens 1/(2a) lamellae per length
+   by P/k each, and tissue of stiffness E (LamStressScaleOf) strains by P/E. */
+LAM_EXPORT PetscReal LamLamellaCompliance(const LamMicrostructure *micro);
+/*
+  Length of the process zone, in apothems: that part of a wall beside the tip of a crack on which the lamella softens,
+  and which elements have to resolve. The shorter of those of a thick body and of a beam of thickness t,
+    E' G/sigma^2    and    t^(3/4) (E' G/sigma^2)^(1/4),    E' = 4 (C1 + C2) + 2 C4,
+  (Yang & Cox, Int. J. Fracture 133, 2005), E' of a wall along itself at rest, at the smallest G/sigma^2 of the tissue;
+  the smallest of all cells. An estimate: factors before both, which authors give as 0.1 to 1, are taken as 1.
+*/
+LAM_EXPORT PetscReal LamLamellaZone(const LamMicrostructure *micro);
+
 /* Wall thickness of a cell, in apothems. */
 static inline PetscReal LamWallThickness(const LamMicrostructure *micro, PetscInt cell)
 {

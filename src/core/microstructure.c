@@ -41,6 +41,42 @@ static void DescribeWall(const LamWall *wall, FILE *out)
   fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
 }
 
+/* {"strength": ..., "fracture_energy": ...}, of `size` factors each. */
+static void DescribeFactors(const char name[], PetscInt size, const PetscReal strength[], const PetscReal energy[],
+                            FILE *out)
+{
+  const PetscReal *const factors[] = {strength, energy};
+
+  fprintf(out, ", \"%s\": {", name);
+  for (int f = 0; f < 2; f++) {
+    fprintf(out, f ? ", \"fracture_energy\": [" : "\"strength\": [");
+    for (PetscInt k = 0; k < size; k++) fprintf(out, "%s%.12g", k ? ", " : "", Clean(factors[f][k]));
+    fprintf(out, "]");
+  }
+  fprintf(out, "}");
+}
+
+/* The lamella; what has no effect is left out. */
+static void DescribeLamella(const LamLamella *l, FILE *out)
+{
+  PetscBool alike = PETSC_TRUE;
+
+  fprintf(out, ", \"softening\": \"%s\", \"stiffness\": %.12g, \"strength\": %.12g, \"fracture_energy\": %.12g",
+          LamSofteningNames[l->softening], Clean(l->stiffness), Clean(l->strength), Clean(l->energy));
+  fprintf(out, ", \"shear_strength\": %.12g", Clean(l->shear_strength));
+  if (l->shear_strength > 0 && l->shear_energy != l->energy)
+    fprintf(out, ", \"shear_energy\": %.12g, \"mixing\": %.12g", Clean(l->shear_energy), Clean(l->mixing));
+  if (l->junction_length > 0) {
+    fprintf(out, ", \"junction_length\": %.12g", Clean(l->junction_length));
+    DescribeFactors("junction", 1, &l->junction_strength, &l->junction_energy, out);
+  }
+  for (int k = 0; k < 3; k++)
+    if (l->face_strength[k] != 1 || l->face_energy[k] != 1) alike = PETSC_FALSE;
+  if (!alike) DescribeFactors("faces", 3, l->face_strength, l->face_energy, out);
+  if (l->between_strength != 1 || l->between_energy != 1)
+    DescribeFactors("between_clusters", 1, &l->between_strength, &l->between_energy, out);
+}
+
 /* Cells that differ, in their order. Bonded cells have no cohesion. */
 static void DescribeCells(const LamMicrostructure *micro, FILE *out)
 {
@@ -51,6 +87,9 @@ static void DescribeCells(const LamMicrostructure *micro, FILE *out)
     DescribeWall(&cell->wall, out);
     fprintf(out, ", \"turgor\": %.12g", Clean(cell->turgor));
     if (LamCellsPart(micro->interface)) fprintf(out, ", \"cohesion\": %.12g", Clean(cell->cohesion));
+    if (micro->interface == LAM_INTERFACE_LAMELLA)
+      fprintf(out, ", \"lamella_strength\": %.12g, \"lamella_energy\": %.12g, \"cluster\": %d",
+              Clean(cell->lamella_strength), Clean(cell->lamella_energy), (int)cell->cluster);
     fprintf(out, "}");
   }
 }
@@ -68,6 +107,7 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   if (LamCellsPart(micro->interface)) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
   if (LamCellsPart(micro->interface) && micro->sharpness == LAM_SHARPNESS_SMOOTH)
     fprintf(out, ", \"width\": %.12g", Clean(micro->contact_width));
+  if (micro->interface == LAM_INTERFACE_LAMELLA) DescribeLamella(&micro->lamella, out);
   fprintf(out, "}");
   if (micro->cell) {
     fprintf(out, ", \"cell\": [");
@@ -175,11 +215,14 @@ static PetscBool ParseWall(json_t *object, LamWall *wall)
 static PetscBool ParseCell(json_t *object, LamCell *cell)
 {
   json_t *wall;
+  int cluster = 0;
 
   *cell = (LamCell){.cohesion = 1.0, .lamella_strength = 1.0, .lamella_energy = 1.0};
-  if (json_unpack(object, "{s:F, s:o, s:F, s?F}", "wall_thickness", &cell->wall_thickness, "wall", &wall, "turgor",
-                  &cell->turgor, "cohesion", &cell->cohesion))
+  if (json_unpack(object, "{s:F, s:o, s:F, s?F, s?F, s?F, s?i}", "wall_thickness", &cell->wall_thickness, "wall", &wall,
+                  "turgor", &cell->turgor, "cohesion", &cell->cohesion, "lamella_strength", &cell->lamella_strength,
+                  "lamella_energy", &cell->lamella_energy, "cluster", &cluster))
     return PETSC_FALSE;
+  cell->cluster = cluster;
   return ParseWall(wall, &cell->wall);
 }
 
@@ -206,26 +249,57 @@ static PetscBool ParsePatch(json_t *object, LamMicrostructure *m)
   return (PetscBool)(found >= 0);
 }
 
-static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
+static PetscBool ParseLamella(json_t *object, LamLamella *l)
 {
-  json_t *wall, *patch = NULL, *cells_that_differ = NULL;
-  const char *interface;
-  int cells[2], along, through, found;
+  const char *softening;
+  int found;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:{s:s, s?F, s?F}, s?o}", "wall_thickness",
-                  &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
-                  "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
-                  "law", &interface, "clearance", &m->clearance, "width", &m->contact_width, "cell",
-                  &cells_that_differ))
+  *l = LAM_LAMELLA_UNIFORM;
+  if (json_unpack(object, "{s:s, s:F, s:F, s:F, s:F}", "softening", &softening, "stiffness", &l->stiffness, "strength",
+                  &l->strength, "fracture_energy", &l->energy, "shear_strength", &l->shear_strength))
     return PETSC_FALSE;
-  found = Find(LAM_INTERFACE_LAW_COUNT, LamInterfaceLawNames, interface);
-  if (found < 0 || cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
+  l->shear_energy = l->energy;
+  if (json_unpack(object, "{s?F, s?F, s?F, s?{s:[F], s:[F]}, s?{s:[F,F,F], s:[F,F,F]}, s?{s:[F], s:[F]}}",
+                  "shear_energy", &l->shear_energy, "mixing", &l->mixing, "junction_length", &l->junction_length,
+                  "junction", "strength", &l->junction_strength, "fracture_energy", &l->junction_energy, "faces",
+                  "strength", &l->face_strength[0], &l->face_strength[1], &l->face_strength[2], "fracture_energy",
+                  &l->face_energy[0], &l->face_energy[1], &l->face_energy[2], "between_clusters", "strength",
+                  &l->between_strength, "fracture_energy", &l->between_energy))
+    return PETSC_FALSE;
+  found = Find(LAM_SOFTENING_COUNT, LamSofteningNames, softening);
+  l->softening = (LamSoftening)found;
+  return (PetscBool)(found >= 0);
+}
+
+static PetscBool ParseInterface(json_t *object, LamMicrostructure *m)
+{
+  const char *law;
+  int found;
+
+  if (json_unpack(object, "{s:s, s?F, s?F}", "law", &law, "clearance", &m->clearance, "width", &m->contact_width))
+    return PETSC_FALSE;
+  found = Find(LAM_INTERFACE_LAW_COUNT, LamInterfaceLawNames, law);
   m->interface = (LamInterfaceLawType)found;
   m->sharpness = m->contact_width > 0 ? LAM_SHARPNESS_SMOOTH : LAM_SHARPNESS_EXACT;
+  if (m->interface == LAM_INTERFACE_LAMELLA) return ParseLamella(object, &m->lamella);
+  return (PetscBool)(found >= 0);
+}
+
+static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
+{
+  json_t *wall, *interface, *patch = NULL, *cells_that_differ = NULL;
+  int cells[2], along, through;
+
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o}", "wall_thickness",
+                  &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
+                  "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
+                  &interface, "cell", &cells_that_differ))
+    return PETSC_FALSE;
+  if (cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
   for (int i = 0; i < 2; i++) m->cells[i] = cells[i];
   m->along = along;
   m->through = through;
-  return (PetscBool)(ParseWall(wall, &m->wall) && (!patch || ParsePatch(patch, m)) &&
+  return (PetscBool)(ParseWall(wall, &m->wall) && ParseInterface(interface, m) && (!patch || ParsePatch(patch, m)) &&
                      (!cells_that_differ || ParseCells(cells_that_differ, m)));
 }
 

@@ -15,6 +15,12 @@ static const struct {
     {"orientation", "rve.cell.orientation (deg)", 180 / PETSC_PI},
     {"interface.clearance", "rve.interface.clearance over apothem", 1},
     {"interface.width", "rve.interface.width over apothem", 1},
+    {"interface.stiffness", "rve.interface.stiffness over (C1 + C2)/apothem", 1},
+    {"interface.strength", "rve.interface.strength over C1 + C2", 1},
+    {"interface.fracture_energy", "rve.interface.fracture_energy over (C1 + C2) apothem", 1},
+    {"interface.shear_strength", "rve.interface.shear.strength over C1 + C2", 1},
+    {"interface.shear_energy", "rve.interface.shear.fracture_energy over (C1 + C2) apothem", 1},
+    {"interface.junction_length", "rve.interface.junction.length over apothem", 1},
     {"cell", "rve.variation", 1},
     {"patch", "rve.patch", 1},
     {"wall.bulk_modulus", "rve.wall.bulk_modulus over C1 + C2", 1},
@@ -37,15 +43,26 @@ static void KeyOf(const char name[], char key[NAME_LENGTH], double *factor)
   }
 }
 
+static void ArrayText(const json_t *array, char text[VALUE_LENGTH])
+{
+  char one[VALUE_LENGTH];
+
+  snprintf(text, VALUE_LENGTH, "[");
+  for (size_t i = 0; i < json_array_size(array); i++) {
+    snprintf(one, sizeof(one), "%s%.6g", i ? ", " : "", json_number_value(json_array_get(array, i)));
+    strncat(text, one, VALUE_LENGTH - 1 - strlen(text));
+  }
+  strncat(text, "]", VALUE_LENGTH - 1 - strlen(text));
+}
+
 static void ValueText(const json_t *value, double factor, char text[VALUE_LENGTH])
 {
   if (json_is_number(value))
     snprintf(text, VALUE_LENGTH, "%.6g", factor * json_number_value(value));
   else if (json_is_string(value))
     snprintf(text, VALUE_LENGTH, "%s", json_string_value(value));
-  else if (json_array_size(value) == 2 && json_is_integer(json_array_get(value, 0)))
-    snprintf(text, VALUE_LENGTH, "[%d, %d]", (int)json_integer_value(json_array_get(value, 0)),
-             (int)json_integer_value(json_array_get(value, 1)));
+  else if (json_is_number(json_array_get(value, 0)))
+    ArrayText(value, text);
   else
     snprintf(text, VALUE_LENGTH, value ? "another" : "not given");
 }

@@ -1,0 +1,88 @@
+/*
+  What follows from the parameters of a lamella: stiffnesses, and the length over which it breaks.
+*/
+#include <lamella/lattice.h>
+#include <lamella/scene.h>
+#include <math.h>
+
+#define SOFT 1e-3    /* share of the tissue's strain that a lamella may add where its stiffness is not given */
+#define STEEP 50.0   /* times the least stiffness: softening is then spread over 98 % of the opening at failure */
+#define TISSUE 100.0 /* 1 over the strain of LamStressScaleOf */
+
+/* strength^2/energy; 0 where nothing holds. */
+static PetscReal Brittleness(PetscReal strength, PetscReal energy)
+{
+  return strength > 0.0 ? strength * strength / energy : 0.0;
+}
+
+/* The largest of the factors on a face and beside its corners, over the faces of the tissue. */
+static PetscReal WorstFactors(const LamMicrostructure *micro)
+{
+  const LamLamella *lamella = &micro->lamella;
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  PetscReal worst = 0.0;
+
+  for (PetscInt k = 0; k < cells * LAM_FACES / 2; k++) {
+    const PetscInt c = k / (LAM_FACES / 2), face = k % (LAM_FACES / 2); /* each pair of cells once */
+    PetscReal strength = lamella->face_strength[face], energy = lamella->face_energy[face];
+
+    if (micro->cell) {
+      const PetscInt neighbour = LamLatticeNeighbour(micro, c, face, NULL, NULL);
+      const LamCell *one = &micro->cell[c], *other = &micro->cell[PetscMax(neighbour, 0)];
+
+      if (neighbour < 0) continue;
+      strength *= PetscMin(one->lamella_strength, other->lamella_strength);
+      energy *= PetscMin(one->lamella_energy, other->lamella_energy);
+      if (one->cluster != other->cluster) {
+        strength *= lamella->between_strength;
+        energy *= lamella->between_energy;
+      }
+    }
+    worst = PetscMax(worst, Brittleness(strength, energy));
+    if (lamella->junction_length > 0.0)
+      worst = PetscMax(worst, Brittleness(strength * lamella->junction_strength, energy * lamella->junction_energy));
+  }
+  return worst;
+}
+
+PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro)
+{
+  const LamLamella *lamella = &micro->lamella;
+  const PetscReal energy =
+      lamella->shear_strength > 0.0 ? PetscMin(lamella->energy, lamella->shear_energy) : lamella->energy;
+
+  return 0.5 * Brittleness(lamella->strength, energy) * WorstFactors(micro);
+}
+
+static PetscReal TissueStiffness(const LamMicrostructure *micro)
+{
+  return TISSUE * LamStressScaleOf(micro).plane;
+}
+
+PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro)
+{
+  const PetscReal stiff = TissueStiffness(micro) / (2.0 * SOFT), steep = STEEP * LamLamellaLeastStiffness(micro);
+
+  return PetscMin(PetscMax(stiff, steep), LAM_LAMELLA_STIFFEST);
+}
+
+PetscReal LamLamellaCompliance(const LamMicrostructure *micro)
+{
+  return TissueStiffness(micro) / (2.0 * micro->lamella.stiffness);
+}
+
+PetscReal LamLamellaZone(const LamMicrostructure *micro)
+{
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  const PetscReal ductility = 0.5 / LamLamellaLeastStiffness(micro); /* energy/strength^2, the smallest */
+  PetscReal zone = INFINITY;
+
+  for (PetscInt c = 0; c < cells; c++) {
+    const LamWall *wall = micro->cell ? &micro->cell[c].wall : &micro->wall;
+    const PetscReal t = LamWallThickness(micro, c);
+    const PetscReal thick = (4.0 * (wall->C1 + wall->C2) + 2.0 * LamWallFibreModulus(wall)) * ductility;
+
+    zone = PetscMin(zone, PetscMin(thick, pow(t, 0.75) * pow(thick, 0.25)));
+  }
+  return zone;
+}
