@@ -9,7 +9,7 @@
 #define OWN "that of the scene's own cell"
 
 /* The properties that a field varies. */
-enum { FIELD_WALL, FIELD_THICKNESS, FIELD_TURGOR, FIELD_COHESION, FIELD_COUNT };
+enum { FIELD_WALL, FIELD_THICKNESS, FIELD_TURGOR, FIELD_COHESION, FIELD_LAMELLA, FIELD_COUNT };
 typedef struct {
   PetscReal variation[FIELD_COUNT]; /* coefficients */
   PetscReal correlation;
@@ -33,7 +33,17 @@ static const LamKey variation_keys[] = {
      .example = "0.5", .help = "Its turgor over that of the load."},
     {REAL("rve.variation.kinds[].cohesion"), INTO(LamCell, cohesion), FROM(0), TO(1000), .default_value = "1",
      .example = "0.8",
-     .help = "Its cohesion over that of the load; between two cells the smaller one holds. Only with law `contact`."},
+     .help = "Its cohesion over that of the load; between two cells the smaller one holds. Not with law `bonded`."},
+    {REAL("rve.variation.kinds[].lamella_strength"), INTO(LamCell, lamella_strength), FROM(0), TO(1000),
+     .default_value = "1", .example = "0.5",
+     .help = "Factor of the strengths of its lamella; between two cells the smaller one holds. Only with law "
+             "`lamella`, as the two below."},
+    {REAL("rve.variation.kinds[].lamella_energy"), INTO(LamCell, lamella_energy), FROM(0), TO(1000),
+     .default_value = "1", .example = "0.5", .help = "Factor of the energies of fracture, likewise."},
+    {INTEGER("rve.variation.kinds[].cluster"), INTO(LamCell, cluster), FROM(0), TO(999999999), .default_value = "0",
+     .example = "1",
+     .help = "Number of a cluster of cells, which `rve.interface.between_clusters` parts from others; the scene's own "
+             "cell is of cluster 0."},
     {LIST("rve.variation.list"), .example = "[0, 1, 1, 0]",
      .help = "The kind of each cell, in the order (0, 0), (0, 1), ..., (1, 0), ..."},
     {INTEGER("rve.variation.list[]"), FROM(0), .example = "1", .help = "Kind of one cell."},
@@ -58,7 +68,9 @@ static const LamKey variation_keys[] = {
     {REAL("rve.variation.field.turgor"), INTO(Field, variation[FIELD_TURGOR]), FROM(0), TO(1), .default_value = "0",
      .example = "0.3", .help = "Of its turgor."},
     {REAL("rve.variation.field.cohesion"), INTO(Field, variation[FIELD_COHESION]), FROM(0), TO(1), .default_value = "0",
-     .example = "0.3", .help = "Of its cohesion; only with law `contact`."},
+     .example = "0.3", .help = "Of its cohesion; not with law `bonded`."},
+    {REAL("rve.variation.field.lamella"), INTO(Field, variation[FIELD_LAMELLA]), FROM(0), TO(1), .default_value = "0",
+     .example = "0.3", .help = "Of strength and fracture energy of its lamella together; only with law `lamella`."},
     {REAL("rve.variation.field.correlation"), INTO(Field, correlation), FROM(0), TO(20), .default_value = "0",
      .example = "2",
      .help = "Correlation length l in distances of neighbours: the logarithms of the factors of two cells r apart have "
@@ -86,6 +98,23 @@ static LamCell OwnCell(const LamMicrostructure *micro)
 
 /* ---- kinds of cells ---- */
 
+static PetscErrorCode CheckLamella(const LamNode *kind, const LamMicrostructure *micro)
+{
+  static const char *const own[] = {"lamella_strength", "lamella_energy", "cluster"};
+  const LamNode *cluster = LamNodeFind(kind, "cluster");
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(own); i++) {
+    const LamNode *node = LamNodeFind(kind, own[i]);
+
+    LamSceneCheckName(!node || micro->interface == LAM_INTERFACE_LAMELLA, node, LAM_NOT_LAMELLA,
+                      LamInterfaceLawNames[micro->interface]);
+  }
+  LamSceneCheckName(!cluster || LamNodeFind(kind->document->root, "rve.interface.between_clusters"), cluster,
+                    "says nothing without rve.interface.between_clusters; write that, or leave it out");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadKind(const LamNode *kind, const LamScene *scene, LamCell *cell)
 {
   const LamNode *wall = LamNodeFind(kind, "wall"), *cohesion = LamNodeFind(kind, "cohesion");
@@ -97,7 +126,8 @@ static PetscErrorCode ReadKind(const LamNode *kind, const LamScene *scene, LamCe
   LamSceneCheck(cell->wall_thickness < 1.0, LamNodeFind(kind, "wall_thickness"),
                 "the wall fills the cell; write a thickness less than the apothem");
   if (wall) PetscCall(LamSceneReadWall(wall, &scene->scales, &micro->wall, &cell->wall));
-  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, cohesion, LAM_BONDED_PARTS);
+  LamSceneCheck(!cohesion || LamCellsPart(micro->interface), cohesion, LAM_BONDED_PARTS);
+  PetscCall(CheckLamella(kind, micro));
   PetscFunctionReturn(0);
 }
 
@@ -223,6 +253,7 @@ static PetscErrorCode ApplyFactors(const LamNode *field, const PetscReal factors
     cell->wall_thickness *= factors[FIELD_THICKNESS * count + c];
     cell->turgor = factors[FIELD_TURGOR * count + c];
     cell->cohesion = factors[FIELD_COHESION * count + c];
+    cell->lamella_strength = cell->lamella_energy = factors[FIELD_LAMELLA * count + c];
     LamSceneCheck(cell->wall_thickness < 1.0, field,
                   "the wall of cell (%d, %d) becomes %.3g apothems thick and fills it; write a smaller wall_thickness "
                   "here, thinner walls, or another seed",
@@ -235,6 +266,7 @@ static PetscErrorCode BuildField(const LamNode *node, LamScene *scene)
 {
   const LamNode *wall = LamNodeFind(node, "wall"), *thickness = LamNodeFind(node, "wall_thickness");
   const LamNode *turgor = LamNodeFind(node, "turgor"), *cohesion = LamNodeFind(node, "cohesion");
+  const LamNode *lamella = LamNodeFind(node, "lamella");
   LamMicrostructure *micro = &scene->micro;
   PetscReal *factors;
   PetscErrorCode ierr;
@@ -242,8 +274,10 @@ static PetscErrorCode BuildField(const LamNode *node, LamScene *scene)
 
   PetscFunctionBeginUser;
   PetscCall(LamSceneFill(node, &scene->scales, Field, &field));
-  LamSceneCheck(!cohesion || micro->interface != LAM_INTERFACE_BONDED, cohesion, LAM_BONDED_PARTS);
-  LamSceneCheckName(wall || thickness || turgor || cohesion, node,
+  LamSceneCheck(!cohesion || LamCellsPart(micro->interface), cohesion, LAM_BONDED_PARTS);
+  LamSceneCheckName(!lamella || micro->interface == LAM_INTERFACE_LAMELLA, lamella, LAM_NOT_LAMELLA,
+                    LamInterfaceLawNames[micro->interface]);
+  LamSceneCheckName(wall || thickness || turgor || cohesion || lamella, node,
                     "varies nothing; write a coefficient of variation, such as wall: 0.2, or leave out variation");
   PetscCall(PetscMalloc1(FIELD_COUNT * micro->cells[0] * micro->cells[1], &factors));
   ierr = LamRandomFactors(micro, field.seed, field.correlation, FIELD_COUNT, field.variation, factors);
@@ -272,7 +306,9 @@ static PetscBool AreSameWalls(const LamWall *a, const LamWall *b)
 static PetscBool AreSame(const LamCell *a, const LamCell *b)
 {
   return (PetscBool)(AreEqual(a->wall_thickness, b->wall_thickness) && AreEqual(a->turgor, b->turgor) &&
-                     AreEqual(a->cohesion, b->cohesion) && AreSameWalls(&a->wall, &b->wall));
+                     AreEqual(a->cohesion, b->cohesion) && AreEqual(a->lamella_strength, b->lamella_strength) &&
+                     AreEqual(a->lamella_energy, b->lamella_energy) && a->cluster == b->cluster &&
+                     AreSameWalls(&a->wall, &b->wall));
 }
 
 /* Removes a variation in which all cells equal the scene's own. */
@@ -344,7 +380,7 @@ static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro)
 {
   /* in a patch of two rows a grip holds every cell */
-  return (PetscBool)(micro->is_patch && LamCellsPart(micro->interface) && micro->sides == LAM_SIDES_FREE &&
+  return (PetscBool)(micro->is_patch && micro->interface == LAM_INTERFACE_CONTACT && micro->sides == LAM_SIDES_FREE &&
                      micro->cells[1] > 2);
 }
 

@@ -7,7 +7,8 @@ static const LamKey interface_keys[] = {
     {MAP("rve.interface"), .example = "{law: bonded}", .help = "The middle lamella between the cells."},
     {NAME_OF("rve.interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT), INTO(LamScene, micro.interface),
      .default_value = "bonded",
-     .help = "`bonded`: cells never part; `contact`: they may part and slide without friction."},
+     .help = "`bonded`: cells never part; `contact`: they may part and slide without friction; `lamella`: a "
+             "middle lamella holds them, which softens and breaks for good."},
     {STRESS("rve.interface.cohesion"), INTO(LamScene, cohesion), FROM(0), .default_value = "0 MPa",
      .example = "0.001 MPa", .help = "Normal traction that parts the cells, a suction that acts at any gap; only with law `contact`."},
     {LENGTH("rve.interface.clearance", "um"), INTO(LamScene, micro.clearance), FROM(0), .default_value = "0 um",
@@ -18,7 +19,7 @@ static const LamKey interface_keys[] = {
      .default_value = "auto",
      .help = "Law of contact: `exact`: gaps are never negative; a state that it does not have is told with the smooth "
              "law; `smooth`: contact pressure falls over a small gap, so that responses are smooth in F; "
-             "`auto`: `exact`. Only with law `contact`."},
+             "`auto`: `exact`. Not with law `bonded`."},
     {LENGTH("rve.interface.width", "um"), INTO(LamScene, micro.contact_width), ABOVE(0),
      .default_words = "0.003 of the apothem", .example = "0.5 um",
      .help = "Gap at which contact pressure has fallen to none; only with sharpness `smooth`. `contact_error` of "
@@ -42,9 +43,9 @@ PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scal
 
 #define LARGEST_WIDTH 0.1 /* of the smooth law of contact, apothems */
 
-static PetscErrorCode BuildContactLaw(const LamNode *rve, LamMicrostructure *micro)
+static PetscErrorCode BuildContactLaw(const LamNode *interface, LamMicrostructure *micro)
 {
-  const LamNode *sharpness = LamNodeFind(rve, "interface.sharpness"), *width = LamNodeFind(rve, "interface.width");
+  const LamNode *sharpness = LamNodeFind(interface, "sharpness"), *width = LamNodeFind(interface, "width");
   const PetscBool smooth = (PetscBool)(micro->sharpness == LAM_SHARPNESS_SMOOTH);
 
   PetscFunctionBeginUser;
@@ -58,15 +59,13 @@ static PetscErrorCode BuildContactLaw(const LamNode *rve, LamMicrostructure *mic
 
 PetscErrorCode LamSceneBuildInterface(const LamNode *root, LamScene *scene)
 {
-  const LamNode *rve = LamNodeFind(root, "rve"), *clearance = LamNodeFind(rve, "interface.clearance");
+  const LamNode *interface = LamNodeFind(root, "rve.interface");
   LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
-  if (micro->interface == LAM_INTERFACE_BONDED) {
-    LamSceneCheck(!(scene->cohesion > 0.0), LamNodeFind(rve, "interface.cohesion"), LAM_BONDED_PARTS);
-    LamSceneCheck(!(micro->clearance > 0.0), clearance, LAM_BONDED_PARTS);
-  }
-  PetscCall(BuildContactLaw(rve, micro));
-  PetscCall(LamSceneCheckClearance(clearance, &scene->scales, micro));
+  PetscCall(LamSceneCheckLaw(interface, micro->interface));
+  PetscCall(BuildContactLaw(interface, micro));
+  PetscCall(LamSceneCheckClearance(LamNodeFind(interface, "clearance"), &scene->scales, micro));
+  if (micro->interface == LAM_INTERFACE_LAMELLA) PetscCall(LamSceneBuildLamella(interface, scene));
   PetscFunctionReturn(0);
 }

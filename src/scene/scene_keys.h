@@ -76,9 +76,9 @@ typedef struct {
   PetscInt count;
 } LamKeyTable;
 
-extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamInterfaceKeys, LamTissueKeys, LamStrengthKeys,
-    LamLoadKeys, LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys, LamRegionKeys,
-    LamMapKeys, LamProcessKeys;
+extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamInterfaceKeys, LamLamellaKeys, LamTissueKeys,
+    LamStrengthKeys, LamLoadKeys, LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys,
+    LamRegionKeys, LamMapKeys, LamProcessKeys;
 
 /* Key i = 0, 1, ... of all tables; NULL after the last one. */
 const LamKey *LamKeyAt(PetscInt i);
@@ -106,6 +106,7 @@ PetscErrorCode LamSceneReadNode(LamNode *node, const LamKey *key);
 #define LamSceneFill(base, scales, type, target) LamSceneFillRecord(base, scales, #type, 1 ? (target) : (type *)NULL)
 PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target);
 
+#define LAM_NOT_LAMELLA "says nothing with law: %s; write law: lamella, or leave it out" /* LamInterfaceLawNames */
 #define LAM_BONDED_PARTS "contradicts law: bonded, whose cells never part; leave it out"
 
 /* The value of a key. If it is given *node is its node; otherwise *node is NULL and the value is the default. */
@@ -144,6 +145,13 @@ PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildInterface(const LamNode *root, LamScene *scene);
 /* Rejects a clearance, given at the node, that leaves a cell no lumen. */
 PetscErrorCode LamSceneCheckClearance(const LamNode *node, const LamScales *scales, const LamMicrostructure *micro);
+/* scene_lamella.c, part of the interface. */
+PetscErrorCode LamSceneBuildLamella(const LamNode *interface, LamScene *scene);
+/* Rejects keys of an interface, of rve or of a region, that its law does not have; interface may be NULL. */
+PetscErrorCode LamSceneCheckLaw(const LamNode *interface, LamInterfaceLawType law);
+/* Sets the default stiffness of a lamella, or rejects the `given` one (NULL: none); nodes for messages. */
+PetscErrorCode LamSceneSetStiffness(const LamNode *given, const LamNode *energy, const LamScales *scales,
+                                    LamMicrostructure *micro);
 
 /*
   Reads the wall of a map. Missing values are those of `own`, with the bulk modulus in proportion to C1 + C2; `own`

@@ -31,8 +31,9 @@ static const LamKey load_keys[] = {
     {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
     {STRESS("load[].turgor"), INTO(LamLoad, turgor), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
      .help = "Turgor of this entry's states."},
-    {STRESS("load[].cohesion"), INTO(LamLoad, cohesion), FROM(0), .default_words = "`rve.interface.cohesion`",
-     .example = "0.001 MPa", .help = "Cohesion of this entry's states; only with law `contact`."},
+    {STRESS("load[].cohesion"), INTO(LamLoad, cohesion), FROM(0),
+     .default_words = "`rve.interface.cohesion`, or `residual_cohesion`", .example = "0.001 MPa",
+     .help = "Cohesion of this entry's states; not with law `bonded`."},
 };
 LAM_KEY_TABLE(LamLoadKeys, load_keys);
 
@@ -216,7 +217,7 @@ static PetscErrorCode BuildInflated(const LamNode *entry, LamScene *scene)
                   "missing, and rve.turgor is, too: nothing inflates the tissue; write turgor: 0.1 MPa");
   scene->loads[0] = (LamLoad){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   PetscCall(BuildPressures(entry, scene, &scene->loads[0]));
-  LamSceneCheckName(!LamCellsPart(scene->micro.interface) || scene->loads[0].cohesion > 0.0,
+  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_CONTACT || scene->loads[0].cohesion > 0.0,
                     LamNodeFind(entry, "inflate"),
                     "free tissue of law: contact is held together by the lamella alone, and there is no cohesion; give "
                     "interface.cohesion > 0, or leave inflate out");

@@ -226,6 +226,9 @@ PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene)
   LamSceneCheckName(!scene->inflate, block,
                     "follows a load from the tissue at rest, and this one begins with inflate: "
                     "true; give F and P from rest");
+  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_LAMELLA, block,
+                    "this version of Lamella does not have maps of law: lamella yet; leave it out, or write law: "
+                    "bonded or contact");
   scene->has_map = PETSC_TRUE;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
     PetscCall(BuildAxis(LamNodeFind(block, axes[a]), scene, &nodes, &scene->map[a]));

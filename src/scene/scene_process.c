@@ -492,6 +492,9 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
   LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
                     "permeability: 0 m/s/MPa for cells that keep their water");
+  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_LAMELLA, block,
+                    "this version of Lamella does not have processes of law: lamella yet; leave it out, or write law: "
+                    "bonded or contact");
   PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
   PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
   PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));

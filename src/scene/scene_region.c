@@ -3,6 +3,7 @@
 */
 #include "scene_rows.h"
 #include "quantity_text.h"
+#include <math.h>
 #include <string.h>
 
 const char *const LamTissueFieldNames[] = {LAM_TISSUE_FIELDS(LAM_NAME_ENTRY)};
@@ -42,12 +43,19 @@ static const LamKey region_keys[] = {
     LAM_OTHER_WALL("macro.regions[].wall", AS_RVE),
     {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
     {NAME_OF("macro.regions[].interface.law", LamInterfaceLawNames, LAM_INTERFACE_LAW_COUNT),
-     INTO(LamRegion, micro.interface), .default_words = AS_RVE, .help = "`bonded` or `contact`."},
+     INTO(LamRegion, micro.interface), .default_words = AS_RVE,
+     .help = "`bonded`, `contact`, or `lamella` where `rve` has it, too."},
     {STRESS("macro.regions[].interface.cohesion"), INTO(LamRegion, cohesion), FROM(0), .default_words = AS_RVE,
      .example = "0.01 MPa", .help = "Cohesion; only with law `contact`."},
     {LENGTH("macro.regions[].interface.clearance", "um"), INTO(LamRegion, micro.clearance), FROM(0),
      .default_words = AS_RVE, .example = "0.1 um",
      .help = "Distance between facing walls at rest; only with law `contact`."},
+    {STRESS("macro.regions[].interface.strength"), INTO(LamRegion, micro.lamella.strength), ABOVE(0),
+     .default_words = AS_RVE, .example = "0.03 MPa",
+     .help = "Strength of its lamella; that in shear is in proportion. Only with law `lamella`, whose other keys are "
+             "those of `rve`."},
+    {AREAL_ENERGY("macro.regions[].interface.fracture_energy"), INTO(LamRegion, micro.lamella.energy), ABOVE(0),
+     .default_words = AS_RVE, .example = "0.5 J/m^2", .help = "Its energy of fracture, likewise."},
     {MAP("macro.regions[].turgor"), .example = "{pressure: 0.05 MPa}", .help = "Its turgor."},
     {STRESS("macro.regions[].turgor.pressure"), INTO(LamRegion, turgor), .default_words = AS_RVE, .example = "0.05 MPa",
      .help = "Pressure."},
@@ -65,7 +73,7 @@ static const LamKey region_keys[] = {
                  "Angle of face normal 0 to the X1 axis."),
     TISSUE_FIELD("turgor", "{table: turgor.csv, unit: MPa}", "0.05 * (1 - y / 10)", "MPa", "Turgor."),
     TISSUE_FIELD("cohesion", "{expression: 0.01 + 0.001 * y, unit: MPa}", "0.01 + 0.001 * y", "MPa",
-                 "Cohesion, at least 0, of tissue with law `contact`."),
+                 "Cohesion, at least 0, of tissue with law `contact`; the residual one with law `lamella`."),
     TISSUE_FIELD("wall_thickness", "{expression: 11 + 0.2 * y, unit: um}", "11 + 0.2 * y", "um",
                  "Thickness of one cell's wall: a few thicknesses are solved, responses between them blended."),
     {INTEGER("macro.fields.wall_thickness.levels"), INTO(LamTissueFields, levels), FROM(2), TO(8),
@@ -100,7 +108,6 @@ static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, L
 static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
 {
   const LamNode *apothem = LamNodeFind(entry, "cell.apothem"), *thickness = LamNodeFind(entry, "cell.wall_thickness");
-  const LamNode *cohesion = LamNodeFind(entry, "interface.cohesion");
   const LamNode *clearance = LamNodeFind(entry, "interface.clearance"), *turgor = LamNodeFind(entry, "turgor.pressure");
 
   PetscFunctionBeginUser;
@@ -110,11 +117,8 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
                           : entry,
                 "the wall, %g um, fills the cell; write a thickness less than the apothem",
                 (double)(r->micro.wall_thickness * r->scales.length) * 1e6);
-  if (r->micro.interface == LAM_INTERFACE_BONDED) {
-    LamSceneCheck(!cohesion || !(r->cohesion > 0), cohesion, LAM_BONDED_PARTS);
-    LamSceneCheck(!clearance || !(r->micro.clearance > 0), clearance, LAM_BONDED_PARTS);
-    r->cohesion = r->micro.clearance = 0;
-  }
+  PetscCall(LamSceneCheckLaw(LamNodeFind(entry, "interface"), r->micro.interface));
+  if (!LamCellsPart(r->micro.interface)) r->cohesion = r->micro.clearance = 0;
   PetscCall(LamSceneCheckClearance(clearance ? clearance : entry, &r->scales, &r->micro));
   if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   PetscFunctionReturn(0);
@@ -136,11 +140,44 @@ static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene
   PetscFunctionReturn(0);
 }
 
+/* What the region does not say is that of the scene's own lamella: `own`, in the region's units. */
+static PetscErrorCode BuildLamella(const LamNode *entry, const LamScene *scene, const LamLamella *own, LamRegion *r)
+{
+  const LamNode *stiffness = LamNodeFind(entry->document->root, "rve.interface.stiffness");
+  const LamNode *energy = LamNodeFind(entry, "interface.fracture_energy"), *law = LamNodeFind(entry, "interface.law");
+  LamLamella *lamella = &r->micro.lamella;
+
+  PetscFunctionBeginUser;
+  if (r->micro.interface != LAM_INTERFACE_LAMELLA) PetscFunctionReturn(0);
+  LamSceneCheck(scene->micro.interface == LAM_INTERFACE_LAMELLA, law,
+                "a region has the lamella of rve.interface, with its own strength and fracture_energy; write law: "
+                "lamella there, too");
+  lamella->shear_strength *= lamella->strength / own->strength;
+  lamella->shear_energy *= lamella->energy / own->energy;
+  if (!energy) energy = entry;
+  LamSceneCheck(lamella->junction_length * sqrt(3.0) <= 1.0 + 1e-12, entry,
+                "rve.interface.junction.length is more than half a face of its cell; write it shorter there");
+  PetscCall(LamSceneSetStiffness(stiffness ? energy : NULL, energy, &r->scales, &r->micro));
+  PetscFunctionReturn(0);
+}
+
+/* Other units: lengths and stresses are multiplied by these. */
+static void ScaleLamella(PetscReal length, PetscReal stress, LamLamella *lamella)
+{
+  lamella->strength *= stress;
+  lamella->shear_strength *= stress;
+  lamella->energy *= stress * length;
+  lamella->shear_energy *= stress * length;
+  lamella->stiffness *= stress / length;
+  lamella->junction_length *= length;
+}
+
 /* Missing lengths and moduli have the same physical value as in the scene's own tissue. */
 static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
   const LamScales *own = &scene->scales, *scales = &r->scales;
   LamMicrostructure *micro = &r->micro;
+  LamLamella lamella;
 
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureCopy(&scene->micro, micro));
@@ -148,10 +185,13 @@ static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, L
   PetscCall(BuildScales(entry, scene, r));
   micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
   micro->clearance = micro->clearance * own->length / scales->length;
+  ScaleLamella(own->length / scales->length, own->stress / scales->stress, &micro->lamella);
+  lamella = micro->lamella;
   r->cohesion = scene->cohesion * own->stress / scales->stress;
   r->turgor = scene->turgor * own->stress / scales->stress;
   PetscCall(LamSceneFill(entry, scales, LamRegion, r));
   PetscCall(CheckTissue(entry, r));
+  PetscCall(BuildLamella(entry, scene, &lamella, r));
   if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
   PetscFunctionReturn(0);
 }

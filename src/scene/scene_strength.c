@@ -28,7 +28,9 @@ PetscErrorCode LamSceneBuildStrength(const LamNode *root, LamScene *scene)
   PetscCall(LamSceneFill(root, &scene->scales, LamStrength, &scene->strength));
   lamella = LamNodeFind(block, "lamella_normal");
   if (!lamella) lamella = LamNodeFind(block, "lamella_shear");
-  LamSceneCheck(!lamella || scene->micro.interface == LAM_INTERFACE_BONDED, lamella,
-                "contradicts law: contact, whose lamella bears the cohesion and no shear; leave it out");
+  LamSceneCheck(
+      !lamella || scene->micro.interface == LAM_INTERFACE_BONDED, lamella, "contradicts law: %s; leave it out",
+      scene->micro.interface == LAM_INTERFACE_CONTACT ? "contact, whose lamella bears the cohesion and no shear"
+                                                      : "lamella, which has the strengths of rve.interface");
   PetscFunctionReturn(0);
 }
