@@ -2,6 +2,7 @@
   lamella check: the model that a scene describes, and its predicted cost.
 */
 #include "app.h"
+#include "lamella_zone.h"
 #include "rounding.h"
 #include "map.h"
 #include "names.h"
@@ -14,10 +15,20 @@ typedef struct {
   LamPlan plan;
   LamPlan *regions; /* [region] of the body; owned */
   LamCost cost;
-  char digits[256];             /* warning of rounding errors; empty: none */
-  char turgor[LAM_TURGOR_TEXT]; /* warning of a turgor that the walls do not hold; empty: none */
-  const char *why_direct;       /* why a process needs direct solves; NULL: a database can be used */
+  char digits[256];              /* warning of rounding errors; empty: none */
+  char turgor[LAM_TURGOR_TEXT];  /* warning of a turgor that the walls do not hold; empty: none */
+  char zone[LAM_ZONE_TEXT + 80]; /* warning of elements too long for the lamella; empty: none */
+  const char *why_direct;        /* why a process needs direct solves; NULL: a database can be used */
 } Check;
+
+/* The first warning of a region. */
+static void FindZone(const LamPlan *plan, const LamRegion *region, Check *check)
+{
+  char text[LAM_ZONE_TEXT];
+
+  LamZoneWarning(&plan->micro, &region->scales, text);
+  if (text[0]) snprintf(check->zone, sizeof(check->zone), "macro.regions: %s: %s", region->name, text);
+}
 
 static PetscErrorCode Plan(const char path[], Check *check)
 {
@@ -27,12 +38,14 @@ static PetscErrorCode Plan(const char path[], Check *check)
   PetscCall(LamPlanCost(check->scene, &check->plan, &check->cost));
   PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, check->digits, sizeof(check->digits)));
   LamTurgorWarning(check->scene, check->turgor);
+  LamZoneWarning(&check->plan.micro, &check->scene->scales, check->zone);
   PetscCall(PetscMalloc1(check->scene->region_count, &check->regions));
   for (PetscInt k = 0; k < check->scene->region_count; k++) {
     LamScene own = *check->scene;
 
     own.micro = own.regions[k].micro;
     PetscCall(LamPlanMake(&own, &check->regions[k]));
+    if (!check->zone[0]) FindZone(&check->regions[k], &own.regions[k], check);
   }
   if (!LamProcessWallsStayAlike(check->scene))
     check->why_direct =
@@ -55,15 +68,49 @@ static json_t *Mesh(const Check *check)
                    "grading", LamJSONReal(micro->grading), "chosen", !given->along || !given->through);
 }
 
-static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
+/* Traction over opening: MPa/mm of 1. */
+static PetscReal StiffnessUnit(const LamScales *scales)
 {
-  return json_pack("{s:I, s:o, s:o, s:o, s:o}", "kinds", (json_int_t)spread->kinds, "wall_thickness",
-                   LamJSONReals(2, spread->wall_thickness, 1), "shear_modulus",
-                   LamJSONReals(2, spread->shear_modulus, MPa), "turgor", LamJSONReals(2, spread->turgor, 1),
-                   "cohesion", LamJSONReals(2, spread->cohesion, 1));
+  return 1e-9 * scales->stress / scales->length;
 }
 
-/* {name, apothem (um), wall_thickness (apothems), shear_modulus, turgor, cohesion (MPa), mesh, unknowns} of each */
+/* Opening at which a lamella has failed in tension, in apothems. */
+static PetscReal FailureOpening(const LamLamella *lamella)
+{
+  return 2.0 * lamella->energy / lamella->strength;
+}
+
+static PetscBool IsStiffnessChosen(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->lamella.stiffness == LamLamellaDefaultStiffness(micro));
+}
+
+static json_t *Lamella(const LamMicrostructure *micro, const LamScales *scales)
+{
+  const PetscReal MPa = scales->stress * 1e-6, energy = scales->stress * scales->length;
+  const LamLamella *l = &micro->lamella;
+
+  return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:o}", "softening", LamSofteningNames[l->softening],
+                   "strength", LamJSONReal(l->strength * MPa), "fracture_energy", LamJSONReal(l->energy * energy),
+                   "shear_strength", LamJSONReal(l->shear_strength * MPa), "shear_fracture_energy",
+                   LamJSONReal(l->shear_energy * energy), "failure_opening", LamJSONReal(FailureOpening(l)),
+                   "stiffness", LamJSONReal(l->stiffness * StiffnessUnit(scales)), "stiffness_chosen",
+                   IsStiffnessChosen(micro), "compliance", LamJSONReal(LamLamellaCompliance(micro)), "zone",
+                   LamJSONReal(LamLamellaZone(micro)));
+}
+
+static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
+{
+  return json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "kinds", (json_int_t)spread->kinds, "wall_thickness",
+                   LamJSONReals(2, spread->wall_thickness, 1), "shear_modulus",
+                   LamJSONReals(2, spread->shear_modulus, MPa), "turgor", LamJSONReals(2, spread->turgor, 1),
+                   "cohesion", LamJSONReals(2, spread->cohesion, 1), "lamella_strength",
+                   LamJSONReals(2, spread->lamella_strength, 1), "lamella_energy",
+                   LamJSONReals(2, spread->lamella_energy, 1));
+}
+
+/* {name, apothem (um), wall_thickness (apothems), shear_modulus, turgor, cohesion (MPa), mesh, unknowns} of each, and
+   the lamella of those with that law */
 static json_t *Regions(const Check *check)
 {
   json_t *list = json_array();
@@ -72,14 +119,16 @@ static json_t *Regions(const Check *check)
     const LamRegion *region = &check->scene->regions[k];
     const LamPlan *plan = &check->regions[k];
     const PetscReal MPa = region->scales.stress * 1e-6;
+    const PetscBool lamella = (PetscBool)(region->micro.interface == LAM_INTERFACE_LAMELLA);
 
-    json_array_append_new(list, json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:I}", "name", region->name,
-                                          "apothem", LamJSONReal(1e6 * region->scales.length), "wall_thickness",
-                                          LamJSONReal(region->micro.wall_thickness), "shear_modulus", LamJSONReal(MPa),
-                                          "turgor", LamJSONReal(region->turgor * MPa), "cohesion",
-                                          LamJSONReal(region->cohesion * MPa), "mesh", "along",
-                                          (json_int_t)plan->micro.along, "through", (json_int_t)plan->micro.through,
-                                          "unknowns", (json_int_t)plan->unknowns));
+    json_array_append_new(list,
+                          json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:{s:I, s:I}, s:I, s:o*}", "name", region->name,
+                                    "apothem", LamJSONReal(1e6 * region->scales.length), "wall_thickness",
+                                    LamJSONReal(region->micro.wall_thickness), "shear_modulus", LamJSONReal(MPa),
+                                    "turgor", LamJSONReal(region->turgor * MPa), "cohesion",
+                                    LamJSONReal(region->cohesion * MPa), "mesh", "along", (json_int_t)plan->micro.along,
+                                    "through", (json_int_t)plan->micro.through, "unknowns", (json_int_t)plan->unknowns,
+                                    "lamella", lamella ? Lamella(&region->micro, &region->scales) : NULL));
   }
   return list;
 }
@@ -91,6 +140,7 @@ static json_t *Warnings(const Check *check)
 
   for (PetscInt k = 0; k < scene->warning_count; k++) json_array_append_new(list, json_string(scene->warnings[k]));
   if (check->turgor[0]) json_array_append_new(list, json_string(check->turgor));
+  if (check->zone[0]) json_array_append_new(list, json_string(check->zone));
   return list;
 }
 
@@ -125,6 +175,7 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(o, "clearance", LamJSONReal(micro->clearance));
     json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
   }
+  if (micro->interface == LAM_INTERFACE_LAMELLA) json_object_set_new(o, "lamella", Lamella(micro, &scene->scales));
   if (plan->load_states)
     json_object_set_new(o, "load",
                         Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->cost.state));
@@ -169,14 +220,51 @@ static void PrintSeconds(PetscReal seconds)
     printf("%.*f h", seconds < 36000, (double)(seconds / 3600));
 }
 
-static void PrintSpread(const LamCellSpread *spread, PetscReal MPa)
+static void PrintSpread(const LamCellSpread *spread, LamInterfaceLawType interface, PetscReal MPa)
 {
   printf("%-12s %" PetscInt_FMT
          " different: wall %.4g to %.4g of the apothem, C1 + C2 %.4g to %.4g MPa, turgor %.4g to "
-         "%.4g and cohesion %.4g to %.4g times the load's\n",
+         "%.4g and cohesion %.4g to %.4g times the load's",
          "cells", spread->kinds, (double)spread->wall_thickness[0], (double)spread->wall_thickness[1],
          (double)(spread->shear_modulus[0] * MPa), (double)(spread->shear_modulus[1] * MPa), (double)spread->turgor[0],
          (double)spread->turgor[1], (double)spread->cohesion[0], (double)spread->cohesion[1]);
+  if (interface == LAM_INTERFACE_LAMELLA)
+    printf(", strength of the lamella %.4g to %.4g and its energy %.4g to %.4g times that of the scene",
+           (double)spread->lamella_strength[0], (double)spread->lamella_strength[1], (double)spread->lamella_energy[0],
+           (double)spread->lamella_energy[1]);
+  printf("\n");
+}
+
+static void PrintLamella(const LamScene *scene, const LamMicrostructure *micro)
+{
+  const LamScales *scales = &scene->scales;
+  const PetscReal MPa = scales->stress * 1e-6, energy = scales->stress * scales->length;
+  const LamLamella *l = &micro->lamella;
+  const PetscReal opening = FailureOpening(l), zone = LamLamellaZone(micro);
+
+  printf("%-12s lamella, %s: strength %.4g MPa, energy of fracture %.4g J/m^2", "interface",
+         LamSofteningNames[l->softening], (double)(l->strength * MPa), (double)(l->energy * energy));
+  if (l->shear_strength != l->strength || l->shear_energy != l->energy)
+    printf("; in shear %.4g MPa, %.4g J/m^2", (double)(l->shear_strength * MPa), (double)(l->shear_energy * energy));
+  if (scene->cohesion > 0) printf("; residual cohesion %.4g MPa", (double)(scene->cohesion * MPa));
+  printf("\n  failure    %s an opening of %.3g um, %.3g of the apothem; over about %.3g um along a wall\n",
+         l->softening == LAM_SOFTENING_EXPONENTIAL ? "mostly until" : "at", (double)(1e6 * opening * scales->length),
+         (double)opening, (double)(1e6 * zone * scales->length));
+  printf("  stiffness  %.4g MPa/mm (%s): adds about %.2g %% to the strain of the tissue\n",
+         (double)(l->stiffness * StiffnessUnit(scales)), IsStiffnessChosen(micro) ? "chosen" : "as the scene says",
+         (double)(100 * LamLamellaCompliance(micro)));
+}
+
+static void PrintInterface(const LamScene *scene, const LamMicrostructure *micro)
+{
+  if (micro->interface == LAM_INTERFACE_LAMELLA)
+    PrintLamella(scene, micro);
+  else if (micro->interface == LAM_INTERFACE_BONDED)
+    printf("%-12s bonded: no unknowns of its own\n", "interface");
+  else
+    printf("%-12s contact: cohesion %.4g MPa, clearance %.4g um, strategy %s\n", "interface",
+           (double)(scene->cohesion * scene->scales.stress * 1e-6),
+           (double)(1e6 * micro->clearance * scene->scales.length), LamStrategyNames[scene->strategy]);
 }
 
 static void PrintWall(const LamWall *wall, PetscReal MPa)
@@ -214,13 +302,8 @@ static void PrintModel(const Check *check)
   printf(", wall %.4g of the apothem (%.4g um), face normal 0 at %.4g deg\n", (double)micro->wall_thickness,
          (double)(1e6 * scene->scales.length), (double)(micro->orientation * 180 / PETSC_PI));
   PrintWall(&micro->wall, MPa);
-  if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, MPa);
-  if (micro->interface == LAM_INTERFACE_BONDED)
-    printf("%-12s bonded: no unknowns of its own\n", "interface");
-  else
-    printf("%-12s contact: cohesion %.4g MPa, clearance %.4g um, strategy %s\n", "interface",
-           (double)(scene->cohesion * MPa), (double)(1e6 * micro->clearance * scene->scales.length),
-           LamStrategyNames[scene->strategy]);
+  if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, micro->interface, MPa);
+  PrintInterface(scene, micro);
   if (scene->turgor != 0 || scene->sealed)
     printf("%-12s %.4g MPa %s%s\n", "turgor", (double)(scene->turgor * MPa),
            check->plan.spread.kinds ? "times the factor of each cell" : "in every lumen",
@@ -258,7 +341,11 @@ static void PrintRegions(const Check *check)
     printf("  %-10s wall %.4g of the apothem (%.4g um), C1 + C2 %.4g MPa, turgor %.4g MPa", region->name,
            (double)region->micro.wall_thickness, (double)(1e6 * region->scales.length), (double)MPa,
            (double)(region->turgor * MPa));
-    if (LamCellsPart(region->micro.interface)) printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
+    if (region->micro.interface == LAM_INTERFACE_LAMELLA)
+      printf(", lamella %.4g MPa and %.4g J/m^2", (double)(region->micro.lamella.strength * MPa),
+             (double)(region->micro.lamella.energy * region->scales.stress * region->scales.length));
+    else if (LamCellsPart(region->micro.interface))
+      printf(", cohesion %.4g MPa", (double)(region->cohesion * MPa));
     printf("; %" PetscInt_FMT " x %" PetscInt_FMT " elements, %" PetscInt_FMT " unknowns\n", plan->micro.along,
            plan->micro.through, plan->unknowns);
   }
@@ -319,6 +406,7 @@ static void PrintWarnings(const Check *check)
 {
   for (PetscInt k = 0; k < check->scene->warning_count; k++) printf("%-12s %s\n", "warning", check->scene->warnings[k]);
   if (check->turgor[0]) printf("%-12s %s\n", "warning", check->turgor);
+  if (check->zone[0]) printf("%-12s %s\n", "warning", check->zone);
 }
 
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)

@@ -208,7 +208,8 @@ static PetscErrorCode CheckInflation(const LamNode *block, const LamScene *scene
   const LamNode *inflate = LamNodeFind(block, "inflate");
 
   PetscFunctionBeginUser;
-  if (!scene->macro.inflate || !LamCellsPart(scene->micro.interface) || scene->cohesion > 0.0) PetscFunctionReturn(0);
+  if (!scene->macro.inflate || scene->micro.interface != LAM_INTERFACE_CONTACT || scene->cohesion > 0.0)
+    PetscFunctionReturn(0);
   LamSceneCheck(!inflate, inflate, "law: contact has no cohesion; %s", remedy);
   PetscCall(LamSceneRaise(block, LAM_MISTAKE_MISSING, "inflate",
                           "missing, so true with turgor, but law: contact has no cohesion; %s", remedy));

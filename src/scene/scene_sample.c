@@ -50,6 +50,11 @@ PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
                     "contradicts turgor mode: sealed; a database holds states of prescribed turgor, from which those "
                     "of sealed cells follow: write mode: prescribed");
   LamSceneCheckName(!count || !accuracy, accuracy, "given together with count; a sample has one of them");
+  if (scene->micro.interface == LAM_INTERFACE_LAMELLA)
+    PetscCall(
+        LamSceneWarn(scene, block, LAM_MISTAKE_NAME, NULL,
+                     "lamella build will refuse law: lamella, whose responses depend on history; leave it out, or "
+                     "write law: bonded or contact"));
   scene->has_sample = PETSC_TRUE;
   sample->turgor_min = sample->turgor_max = scene->turgor;
   sample->accuracy = count ? 0.0 : scene->accuracy;

@@ -157,6 +157,7 @@ PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
   PetscCall(LamSceneRead(scene_path, &b->scene));
   PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `sample`, which says what states to build from", scene_path);
+  PetscCall(LamRefuseHistory(scene_path, &b->scene->micro, "a table", ""));
   PetscCall(LamChooseMesh(b->scene, &trial));
   LamWarnOfMesh(PETSC_COMM_WORLD, &b->reporter, b->scene, &trial);
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &b->scene->micro, b->scene->accuracy));

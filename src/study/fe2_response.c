@@ -4,6 +4,7 @@
 #include "fe2_run.h"
 #include "mesh_choice.h"
 #include "microstructure_compare.h"
+#include "lamella_zone.h"
 #include "rounding.h"
 #include <stdio.h>
 #include <string.h>
@@ -86,6 +87,7 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscCall(LamChooseMesh(&tissue->scene, &trial));
   LamWarnOfMesh(run->comm, &run->reporter, &tissue->scene, &trial);
   PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &tissue->scene.micro, tissue->scene.accuracy));
+  LamWarnOfZone(run->comm, &run->reporter, &tissue->scene.micro, &tissue->scene.scales);
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
   else if (run->response == LAM_FE2_CACHE)

@@ -11,6 +11,9 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   *finished = PETSC_FALSE;
   run->start = LamClock();
   if (!run->scene) PetscCall(LamSceneRead(run->scene_path, &run->scene));
+  if (run->response != LAM_FE2_DIRECT)
+    PetscCall(
+        LamRefuseHistory(run->scene_path, &run->scene->micro, "a table", ", or solve directly, without a database"));
   if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));

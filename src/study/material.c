@@ -31,6 +31,7 @@ static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
              "%s: rve.patch: a patch between grips is a body of its own and no material point; take a period "
              "(rve.cells)",
              path);
+  PetscCall(LamRefuseHistory(path, &m->scene->micro, "a material", ""));
   PetscCall(LamChooseMesh(m->scene, NULL));
   PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, m->scene, &m->rve));
   PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));

@@ -98,6 +98,8 @@ static PetscErrorCode MeasureSpread(const LamMicrostructure *micro, LamCellSprea
     Widen(!c, cell->wall.C1 + cell->wall.C2, spread->shear_modulus);
     Widen(!c, cell->turgor, spread->turgor);
     Widen(!c, cell->cohesion, spread->cohesion);
+    Widen(!c, cell->lamella_strength, spread->lamella_strength);
+    Widen(!c, cell->lamella_energy, spread->lamella_energy);
   }
   PetscFunctionReturn(0);
 }

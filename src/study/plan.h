@@ -11,7 +11,7 @@ typedef struct {
   PetscInt kinds; /* number of different cells; 0: all equal, and no range below is set */
   PetscReal wall_thickness[2];
   PetscReal shear_modulus[2]; /* C1 + C2, relative to that of the scene's own wall */
-  PetscReal turgor[2], cohesion[2];
+  PetscReal turgor[2], cohesion[2], lamella_strength[2], lamella_energy[2];
 } LamCellSpread;
 
 typedef struct {

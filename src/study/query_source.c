@@ -67,6 +67,7 @@ static PetscErrorCode Open(const char path[], LamQuerySource *a)
       "%s: holds states of a patch between grips, a body whose response is its own and no material point's; take "
       "a file of periodic cells (rve.cells), or solve the patch with lamella rve",
       path);
+  PetscCall(LamRefuseHistory(path, &a->micro, "a table", ""));
   PetscCall(ReadScene(path, &a->scene));
   PetscCheck(!a->scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: holds states of sealed cells, whose pressure depends on their water; take a file of prescribed "

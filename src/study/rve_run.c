@@ -4,6 +4,7 @@
 #include "rve_run.h"
 #include "clock.h"
 #include "plan.h"
+#include "lamella_zone.h"
 #include "rounding.h"
 #include "rve_fields.h"
 #include "turgor_stretch.h"
@@ -52,6 +53,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &run->reporter, &plan.micro, run->scene->accuracy));
   LamWarnOfMesh(PETSC_COMM_WORLD, &run->reporter, run->scene, &plan.trial);
   LamWarnOfTurgor(&run->reporter, run->scene);
+  LamWarnOfZone(PETSC_COMM_WORLD, &run->reporter, &plan.micro, &run->scene->scales);
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,

@@ -44,6 +44,18 @@ void LamReportScene(const LamReporter *reporter, const LamScene *scene)
   LamWarnOfTurgor(reporter, scene);
 }
 
+PetscErrorCode LamRefuseHistory(const char path[], const LamMicrostructure *micro, const char what[],
+                                const char remedy[])
+{
+  PetscFunctionBeginUser;
+  PetscCheck(
+      micro->interface != LAM_INTERFACE_LAMELLA, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: rve.interface.law: lamella: its responses depend on history, which %s does not have; write law: bonded "
+      "or contact%s",
+      path, what, remedy);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
 {
   PetscFunctionBeginUser;

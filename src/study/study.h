@@ -25,6 +25,11 @@ PetscErrorCode LamShareBytes(MPI_Comm comm, PetscErrorCode ierr, size_t *size, v
 /* Largest memory of any rank, MB. Collective. */
 PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 
+/* Refuses tissue whose response depends on its history (law `lamella`), of the file `path`. what: "a table", which has
+   none; remedy: what may be done besides taking another law, or "". */
+PetscErrorCode LamRefuseHistory(const char path[], const LamMicrostructure *micro, const char what[],
+                                const char remedy[]);
+
 /* An RVE of the scene, whose mesh is chosen, set up; comm as for LamRVECreate. */
 PetscErrorCode LamSceneRVECreate(MPI_Comm comm, const LamScene *scene, LamRVE *rve);
 /* Makes room for one more item of `size` bytes in a list of `count`; items: address of the owned pointer. */

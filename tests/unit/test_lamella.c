@@ -1,6 +1,8 @@
 /* Stiffnesses and process zone of a lamella. */
 #include "support/test.h"
 #include <lamella/scene.h>
+#include <string.h>
+#include "lamella_zone.h"
 
 /* Walls of C1 + C2 = 1 and C4 = 9 with a lamella of strength 0.4 and energy 0.1: strength^2/(2 energy) = 0.8. */
 static LamMicrostructure Tissue(void)
@@ -117,4 +119,49 @@ TEST(the_process_zone_is_the_shortest_of_all_cells)
   micro.cell = cell;
   cell[1].wall_thickness = 0.05;
   assert_near(LamLamellaZone(&micro), pow(0.05, 0.75) * pow(22 * 0.1 / 0.16, 0.25), 1e-14);
+}
+
+/* The number of elements that it names is one at which it is silent, and one fewer is not. */
+TEST(a_warning_names_the_elements_that_would_do)
+{
+  const LamScales scales = {.length = 75e-6, .stress = 1e5};
+  LamMicrostructure micro = Tissue();
+  char text[LAM_ZONE_TEXT];
+  int named;
+
+  micro.along = 3;
+  micro.grading = 0.5;
+  LamZoneWarning(&micro, &scales, text);
+  assert_non_null(strstr(text, "over about 34.8 um"));
+  assert_int_equal(sscanf(strstr(text, "rve.mesh.along"), "rve.mesh.along: %d or more", &named), 1);
+  micro.along = named;
+  LamZoneWarning(&micro, &scales, text);
+  assert_string_equal(text, "");
+  micro.along = named - 1;
+  LamZoneWarning(&micro, &scales, text);
+  assert_string_not_equal(text, "");
+}
+
+TEST(a_warning_tells_where_no_mesh_would_do)
+{
+  const LamScales scales = {.length = 75e-6, .stress = 1e5};
+  LamMicrostructure micro = Tissue();
+  char text[LAM_ZONE_TEXT];
+
+  micro.along = 200;
+  micro.lamella.energy = 1e-4;
+  LamZoneWarning(&micro, &scales, text);
+  assert_non_null(strstr(text, "no mesh resolves it; a smaller strength or a larger fracture_energy is needed"));
+}
+
+TEST(other_laws_have_no_zone)
+{
+  const LamScales scales = {.length = 75e-6, .stress = 1e5};
+  LamMicrostructure micro = Tissue();
+  char text[LAM_ZONE_TEXT];
+
+  micro.along = 1;
+  micro.interface = LAM_INTERFACE_CONTACT;
+  LamZoneWarning(&micro, &scales, text);
+  assert_string_equal(text, "");
 }

@@ -96,14 +96,16 @@ TEST(shear_may_be_unresisted)
   assert_near(scene->micro.lamella.shear_strength, 0, 0);
 }
 
-TEST(a_lamella_holds_the_free_sides_of_a_patch_and_inflated_tissue)
+TEST(a_lamella_holds_the_free_sides_of_a_patch_and_what_is_inflated)
 {
   OwnedScene *scene = Read(RVE PLAIN "  patch: {columns: 4, rows: 3, sides: free}\n"
                                      "  turgor: {pressure: 0.02 MPa}\n");
   OwnedScene *inflated = Read(RVE PLAIN "  turgor: {pressure: 0.02 MPa}\nload: [{inflate: true}]\n");
+  OwnedScene *body = Read(RVE PLAIN "  turgor: {pressure: 0.02 MPa}\n" BODY);
 
   assert_int_equal(scene->micro.sides, LAM_SIDES_FREE);
   assert_true(inflated->inflate);
+  assert_true(body->macro.inflate);
 }
 
 TEST(a_field_varies_strength_and_energy_alike)
