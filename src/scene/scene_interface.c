@@ -10,7 +10,8 @@ static const LamKey interface_keys[] = {
      .help = "`bonded`: cells never part; `contact`: they may part and slide without friction; `lamella`: a "
              "middle lamella holds them, which softens and breaks for good."},
     {STRESS("rve.interface.cohesion"), INTO(LamScene, cohesion), FROM(0), .default_value = "0 MPa",
-     .example = "0.001 MPa", .help = "Normal traction that parts the cells, a suction that acts at any gap; only with law `contact`."},
+     .example = "0.001 MPa",
+     .help = "Normal traction that parts the cells, a suction that acts at any gap; only with law `contact`."},
     {LENGTH("rve.interface.clearance", "um"), INTO(LamScene, micro.clearance), FROM(0), .default_value = "0 um",
      .example = "0.1 um",
      .help = "Distance between facing walls at rest: each cell is smaller than its place by half of it all around; "
