@@ -8,15 +8,26 @@
 #define IN_ZONE 3      /* elements */
 #define MOST_ALONG 200 /* that a scene may have */
 
+/* A face over the number of its elements, in its middle if they are graded. */
+static PetscReal LongestEdge(PetscInt along, PetscReal grading)
+{
+  return 2.0 / sqrt(3.0) * (1.0 + PetscMax(0.0, grading)) / (PetscReal)along;
+}
+
+PetscInt LamZoneAlong(const LamMicrostructure *micro, PetscReal grading)
+{
+  if (micro->interface != LAM_INTERFACE_LAMELLA) return 1;
+  return (PetscInt)PetscMin(MOST_ALONG + 1.0, ceil(IN_ZONE * LongestEdge(1, grading) / LamLamellaZone(micro)));
+}
+
 void LamZoneWarning(const LamMicrostructure *micro, const LamScales *scales, char text[LAM_ZONE_TEXT])
 {
-  /* a face over its number of elements, in its middle if they are graded */
-  const PetscReal face = 2.0 / sqrt(3.0) * (1.0 + PetscMax(0.0, micro->grading)), um = 1e6 * scales->length;
-  const PetscReal zone = LamLamellaZone(micro), least = ceil(IN_ZONE * face / zone);
+  const PetscInt least = LamZoneAlong(micro, micro->grading);
+  const PetscReal um = 1e6 * scales->length;
   char remedy[80];
 
   text[0] = '\0';
-  if (micro->interface != LAM_INTERFACE_LAMELLA || !((PetscReal)micro->along < least)) return;
+  if (micro->along >= least) return;
   if (least <= MOST_ALONG)
     snprintf(remedy, sizeof(remedy), "write rve.mesh.along: %d or more", (int)least);
   else
@@ -24,7 +35,7 @@ void LamZoneWarning(const LamMicrostructure *micro, const LamScales *scales, cha
   snprintf(text, LAM_ZONE_TEXT,
            "elements of up to %.3g um along a face do not resolve how the lamella breaks, over about %.3g um: tissue "
            "will seem too strong; %s",
-           (double)(face / (PetscReal)micro->along * um), (double)(zone * um), remedy);
+           (double)(LongestEdge(micro->along, micro->grading) * um), (double)(LamLamellaZone(micro) * um), remedy);
 }
 
 void LamWarnOfZone(MPI_Comm comm, const LamReporter *reporter, const LamMicrostructure *micro, const LamScales *scales)

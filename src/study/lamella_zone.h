@@ -7,6 +7,8 @@
 
 #include "study.h"
 
+/* Least number of elements along a face that resolve it, a third of the zone each; 1 with other laws. */
+PetscInt LamZoneAlong(const LamMicrostructure *micro, PetscReal grading);
 #define LAM_ZONE_TEXT 320
 /* One sentence if elements along a face are longer than a third of the zone (LamLamellaZone), with the number that is
    enough; else, and with other laws, empty. `micro` has its mesh. */

@@ -1,14 +1,16 @@
 /*
   The mesh of a scene. A body of cells in contact depends on their tangent, which is uneven because contact moves from
   node to node: 4-8 % with 6 elements along a face, 2 % with 12, below 1 % with BODY_ALONG (docs/results/performance.md,
-  FE²).
+  FE²). A lamella adds elements where they do not resolve its process zone.
 */
 #include "mesh_choice.h"
+#include "lamella_zone.h"
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
 
 #define BODY_ALONG 16
+#define FINEST_ALONG 40    /* for the zone in which a lamella breaks; finer ones must be asked for */
 #define BODY_ACCURACY 0.01 /* not applied if the prescribed accuracy is coarser */
 
 /* ---- measured errors ---- */
@@ -72,7 +74,7 @@ PetscErrorCode LamMeasuredMesh(const char path[], const char hash[], PetscReal a
 PetscErrorCode LamChooseMesh(LamScene *scene, LamMeshTrial *trial)
 {
   LamMicrostructure *micro = &scene->micro;
-  const PetscBool uneven = (PetscBool)(scene->has_macro && LamCellsPart(micro->interface));
+  const PetscBool uneven = (PetscBool)(scene->has_macro && micro->interface == LAM_INTERFACE_CONTACT);
   LamMeshTrial choice = {.error = NAN};
 
   PetscFunctionBeginUser;
@@ -84,6 +86,7 @@ PetscErrorCode LamChooseMesh(LamScene *scene, LamMeshTrial *trial)
   } else if (!micro->along || !micro->through) {
     PetscCall(LamTryMeshes(scene, &choice));
   }
+  if (choice.tried) choice.along = PetscMax(choice.along, PetscMin(LamZoneAlong(micro, choice.grading), FINEST_ALONG));
   if (uneven && scene->accuracy <= BODY_ACCURACY) choice.along = PetscMax(choice.along, BODY_ALONG);
   if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : choice.grading;
   if (!micro->along) micro->along = choice.along;

@@ -4,7 +4,8 @@
   Method. Up to LOADS loads are solved on one cell: on a reference mesh that suits the accuracy, started from a coarser
   solution, and then on meshes of increasing cost, from F = I as they will be used. The error of a mesh is
   LamStressError against the reference, the largest over the loads; MARGIN covers the error of the reference itself and
-  the loads between.
+  the loads between. Of tissue with a lamella those loads count at which it is hardly broken: beyond, states of
+  different meshes may be on different branches.
 */
 #include "mesh_choice.h"
 #include "build.h"
@@ -15,9 +16,10 @@
 #define LOADS 4    /* a chance solution at one of them decides nothing */
 #define MARGIN 1.5 /* bench_accuracy: then 92 % of states keep an accuracy of 1 % */
 #define TOLERANCE 1e-6
-#define FINER 1.7 /* times as many elements on the reference: 28 x 6 against 36 x 8 */
-#define PATH 2    /* in the list: mesh of the loads whose F is not given, and start of the reference */
-#define UNKNOWN 6 /* in the list, where no trial load has a solution: 12 x 2 in contact, 16 x 1 */
+#define BROKEN 0.25 /* share of a lamella that is broken at most */
+#define FINER 1.7   /* times as many elements on the reference: 28 x 6 against 36 x 8 */
+#define PATH 2      /* in the list: mesh of the loads whose F is not given, and start of the reference */
+#define UNKNOWN 6   /* in the list, where no trial load has a solution: 12 x 2 in contact, 16 x 1 */
 
 typedef struct {
   PetscInt along, through;
@@ -129,31 +131,41 @@ typedef struct {
   LamLoad at[LOADS];
 } Loads;
 
+/* Whether the state can be compared between meshes. */
+static PetscBool IsComparable(const LamResponse *response)
+{
+  return (PetscBool)(LamResponseHasFields(response) && !(response->broken_fraction > BROKEN));
+}
+
 /* Solves the scene's loads in their order, and keeps some of them, the last included, with the F found. */
 static PetscErrorCode FollowLoads(const LamScene *scene, Cell *cell, Loads *loads)
 {
   static const LamStressControl none = {0};
   LamScene copy = *scene;
   PetscReal F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const PetscInt n = scene->load_count, kept = PetscMin(n, LOADS);
+  const PetscBool all = (PetscBool)(scene->controls || scene->micro.interface == LAM_INTERFACE_LAMELLA);
+  PetscInt n = scene->load_count, found = 0;
+  LamLoad *load_of;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &copy.loads));
-  PetscCall(PetscMalloc1(n, &copy.controls));
+  PetscCall(PetscMalloc2(n, &copy.controls, n, &load_of));
   PetscCall(PetscArraycpy(copy.loads, scene->loads, n));
   for (PetscInt k = 0; k < n; k++) copy.controls[k] = scene->controls ? scene->controls[k] : none;
   for (PetscInt k = 0; k < n; k++) {
     const LamLoad load = LamLoadAfter(&copy.loads[k], &copy.controls[k], F);
     LamResponse response = {.status = LAM_CONVERGED, .load = load};
 
-    if (scene->controls) PetscCall(LamRVESolveMixed(cell->rve, &load, &copy.controls[k], cell->state, &response));
-    if (!LamResponseHasFields(&response)) break;
+    if (all) PetscCall(LamRVESolveMixed(cell->rve, &load, &copy.controls[k], cell->state, &response));
+    if (!IsComparable(&response)) break;
     PetscCall(PetscArraycpy(F, response.load.F, 9));
     if (scene->inflate && !k) LamLoadsFromInflated(&copy, F);
-    if (loads->n < kept && (k + 1) * kept >= (loads->n + 1) * n) loads->at[loads->n++] = response.load;
+    load_of[found++] = response.load;
   }
+  for (PetscInt k = 0; k < found; k++)
+    if ((k + 1) * PetscMin(found, LOADS) >= (loads->n + 1) * found) loads->at[loads->n++] = load_of[k];
   PetscCall(PetscFree(copy.loads));
-  PetscCall(PetscFree(copy.controls));
+  PetscCall(PetscFree2(copy.controls, load_of));
   PetscFunctionReturn(0);
 }
 
@@ -218,7 +230,7 @@ static PetscErrorCode FindTruth(const LamScene *scene, PetscInt number, Mesh mes
       PetscCall(LamRVESolveFiner(path->rve, path->state, reference.rve, reference.state, &response));
     else
       PetscCall(LamRVESolve(reference.rve, &all->at[k], reference.state, &response));
-    if (!LamResponseHasFields(&response)) continue;
+    if (!IsComparable(&response)) continue;
     truth->loads.at[truth->loads.n] = all->at[k];
     PetscCall(PetscArraycpy(truth->P[truth->loads.n++], response.P, 9));
   }

@@ -72,8 +72,8 @@ static void Compare(const LamScene *scene, PetscInt n, const LamResponse coarser
     reference->error[k] = reference->used_count ? 0 : NAN;
     for (PetscInt s = 0; s < n; s++)
       if (reference->used[s])
-        reference->error[k] = PetscMax(reference->error[k], LamErrorOf((LamErrorKind)k, &scene->micro,
-                                                                       &coarser[s], &reference->responses[s]));
+        reference->error[k] = PetscMax(
+            reference->error[k], LamErrorOf((LamErrorKind)k, &scene->micro, &coarser[s], &reference->responses[s]));
   }
 }
 
