@@ -75,8 +75,8 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
   PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->classes,
                          2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0, contact->chain,
                          &contact->x));
-  PetscCall(PetscCalloc4(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
-                         &contact->weight, contact->count, &contact->active));
+  PetscCall(PetscCalloc5(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
+                         &contact->weight, contact->count, &contact->active, contact->count, &contact->held));
   PetscCall(PetscCalloc2(contact->count * contact->dofs, &contact->rows,
                          contact->face_count * contact->dofs * contact->dofs, &contact->hessian));
   for (PetscInt e = 0; e < along; ++e) contact->J0[e] = LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
@@ -117,7 +117,7 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
   PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
   PetscCall(PetscFree5((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0, (*contact)->x));
-  PetscCall(PetscFree4((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active));
+  PetscCall(PetscFree5((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active, (*contact)->held));
   PetscCall(PetscFree2((*contact)->rows, (*contact)->hessian));
   PetscCall(PetscFree2((*contact)->position, (*contact)->coupling));
   PetscCall(PetscFree(*contact));
@@ -246,7 +246,8 @@ PetscBool LamContactCarries(const LamContact *contact, PetscInt h)
   const PetscInt j = h % contact->hats;
   const PetscReal half = 0.5 * contact->J0[PetscMin(j, contact->hats - 2) / 2];
 
-  return (PetscBool)(j >= face->first && j <= face->last && contact->weight[h] > LEAST_WEIGHT * half);
+  return (PetscBool)(!contact->held[h] && j >= face->first && j <= face->last &&
+                     contact->weight[h] > LEAST_WEIGHT * half);
 }
 
 PetscInt LamContactFindActive(LamContact *contact)

@@ -46,6 +46,7 @@ typedef struct {
   PetscReal *rows;            /* [count][dofs] dG of unmerged hats */
   PetscReal *hessian;         /* [face][dofs][dofs] second derivative of sum lambda G */
   PetscBool *active;          /* [count]: in contact; false where merged */
+  PetscBool *held;            /* [count]: no multiplier: an undamaged lamella resists compression, too (lamella.h) */
   PetscInt *position;         /* [face][dofs (dofs + 1)/2]: matrix index of pairs of dofs, row by row */
   PetscInt *coupling;         /* [count][dofs]: matrix index of dof and multiplier */
   PetscReal (*x)[2];          /* [chain] work space: chains of a face, ... */

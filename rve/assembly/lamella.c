@@ -157,21 +157,26 @@ void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
   }
 }
 
+typedef struct {
+  const LamLayer *layer;
+  PetscReal sum;
+} Energy;
+
 static void AddEnergy(void *ctx, const LamBondPoint *point)
 {
-  PetscReal *energy = (PetscReal *)((void **)ctx)[0];
-  const LamLayer *layer = (const LamLayer *)((void **)ctx)[1];
+  Energy *energy = (Energy *)ctx;
+  const LamLayer *layer = energy->layer;
 
-  *energy += layer->weight[point->point] * point->step.phi;
+  energy->sum +=
+      layer->weight[point->point] * (point->step.phi + 0.5 * layer->bond[point->point].pressing * point->jump.r);
 }
 
 PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 {
-  PetscReal energy = 0.0;
-  void *ctx[2] = {&energy, rve->layer};
+  Energy energy = {rve->layer, 0.0};
 
-  LamLayerVisitPoints(rve, load->F, y, AddEnergy, ctx);
-  return energy;
+  LamLayerVisitPoints(rve, load->F, y, AddEnergy, &energy);
+  return energy.sum;
 }
 
 typedef struct {
@@ -208,6 +213,24 @@ void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], Pets
 
 /* ---- history ---- */
 
+/* Sets which hats an undamaged lamella holds: those with no other point in reach, half an edge. */
+static void FindHeldHats(LamRVE rve)
+{
+  const LamLayer *layer = rve->layer;
+  LamContact *contact = rve->contact;
+  const PetscInt points = LAM_EDGE_POINTS * rve->mesh.along;
+
+  for (PetscInt h = 0; h < contact->count; ++h) contact->held[h] = PETSC_TRUE;
+  for (PetscInt p = 0; p < layer->count; ++p) {
+    const PetscReal at = (PetscReal)(p % points / LAM_EDGE_POINTS) + LamEdgePlace(p % LAM_EDGE_POINTS);
+    const PetscInt before = (PetscInt)(2.0 * at);
+
+    if (LamBondIsUndamaged(&layer->bond[p])) continue;
+    contact->held[p / points * contact->hats + before] = PETSC_FALSE;
+    contact->held[p / points * contact->hats + before + 1] = PETSC_FALSE;
+  }
+}
+
 void LamLayerTake(LamRVE rve, const LamRVEState state)
 {
   LamLayer *layer = rve->layer;
@@ -217,6 +240,7 @@ void LamLayerTake(LamRVE rve, const LamRVEState state)
   layer->released = state->released;
   layer->work = state->work;
   for (PetscInt p = 0; p < layer->count; ++p) LamBondTake(&state->history[p], &layer->bond[p]);
+  FindHeldHats(rve);
 }
 
 typedef struct {

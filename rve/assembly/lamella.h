@@ -2,7 +2,8 @@
   The lamella between facing walls, law `lamella` (cohesive.h, cohesive_edge.h).
 
   Facing walls lie on each other at rest and have equal meshes: a point of the lamella joins the two points with the
-  same reference place. Compression is not the lamella's: walls are kept apart by contact, with or without it.
+  same reference place. An undamaged lamella resists compression, too; where it is damaged, compression is left to
+  contact, which keeps all walls apart. So tissue that is not yet damaged is elastic, without contact to be found.
 */
 #ifndef LAM_RVE_LAMELLA_H
 #define LAM_RVE_LAMELLA_H

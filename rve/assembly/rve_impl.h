@@ -270,7 +270,7 @@ PetscErrorCode LamContactEvaluate(LamRVE rve, const LamLoad *load, const PetscRe
 /* Updates the active set from the last evaluation: lambda - c gap > 0. Returns the number of changes. */
 PetscInt LamContactFindActive(LamContact *contact);
 PetscInt LamContactCountActive(const LamContact *contact);
-/* Whether a hat has a multiplier of its own, and is not merged into another. */
+/* Whether a hat has a multiplier of its own, and is not merged into another or held by a lamella. */
 PetscBool LamContactCarries(const LamContact *contact, PetscInt hat);
 /* max |min(lambda, c gap)| over all hats. */
 PetscReal LamContactComplementarity(const LamContact *contact);

@@ -73,34 +73,42 @@ PetscReal LamEnvelopeSpent(const LamEnvelope *e, PetscReal kappa)
   return 0.5 * e->strength * e->onset + e->range * (e->strength - T) - 0.5 * T * kappa;
 }
 
-void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscReal beta, LamJump *out)
+/* whole jump.jump + shear delta_t^2 with delta_t^2 = p^2/m, p = jump.tangent and m = tangent.tangent, and its
+   derivatives in (jump, tangent). */
+static PetscReal Form(const PetscReal jump[2], const PetscReal tangent[2], PetscReal whole, PetscReal shear,
+                      PetscReal d[4], PetscReal dd[4][4])
 {
-  /* s = delta_t^2 = p^2/m with p = jump.tangent and m = tangent.tangent; q = jump.jump + (beta^2 - 1) s, and beta^2 s
-     where the walls are pressed together */
   const PetscReal m = tangent[0] * tangent[0] + tangent[1] * tangent[1];
-  const PetscReal p = jump[0] * tangent[0] + jump[1] * tangent[1], root = PetscSqrtReal(m);
-  PetscReal both, shear;
+  const PetscReal p = jump[0] * tangent[0] + jump[1] * tangent[1];
 
-  out->normal = (tangent[0] * jump[1] - tangent[1] * jump[0]) / root;
-  out->shear = p / root;
-  both = out->normal >= 0.0 ? 1.0 : 0.0;
-  shear = beta * beta - both;
-  out->q = both * (jump[0] * jump[0] + jump[1] * jump[1]) + shear * p * p / m;
   for (PetscInt i = 0; i < 2; ++i) {
-    out->dq[i] = 2.0 * (both * jump[i] + shear * p / m * tangent[i]);
-    out->dq[2 + i] = 2.0 * shear * p / m * (jump[i] - p / m * tangent[i]);
+    d[i] = 2.0 * (whole * jump[i] + shear * p / m * tangent[i]);
+    d[2 + i] = 2.0 * shear * p / m * (jump[i] - p / m * tangent[i]);
     for (PetscInt j = 0; j < 2; ++j) {
       const PetscReal one = i == j ? 1.0 : 0.0, tt = tangent[i] * tangent[j];
 
-      out->ddq[i][j] = 2.0 * (both * one + shear * tt / m);
-      out->ddq[i][2 + j] = 2.0 * shear / m * (tangent[i] * jump[j] + p * one - 2.0 * p / m * tt);
-      out->ddq[2 + j][i] = out->ddq[i][2 + j];
-      out->ddq[2 + i][2 + j] =
-          2.0 * shear / m *
-          (jump[i] * jump[j] - p / m * (2.0 * (jump[i] * tangent[j] + tangent[i] * jump[j]) + p * one) +
-           4.0 * p * p / (m * m) * tt);
+      dd[i][j] = 2.0 * (whole * one + shear * tt / m);
+      dd[i][2 + j] = 2.0 * shear / m * (tangent[i] * jump[j] + p * one - 2.0 * p / m * tt);
+      dd[2 + j][i] = dd[i][2 + j];
+      dd[2 + i][2 + j] = 2.0 * shear / m *
+                         (jump[i] * jump[j] - p / m * (2.0 * (jump[i] * tangent[j] + tangent[i] * jump[j]) + p * one) +
+                          4.0 * p * p / (m * m) * tt);
     }
   }
+  return whole * (jump[0] * jump[0] + jump[1] * jump[1]) + shear * p * p / m;
+}
+
+void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscReal beta, LamJump *out)
+{
+  const PetscReal length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
+  PetscReal open, pressed;
+
+  out->normal = (tangent[0] * jump[1] - tangent[1] * jump[0]) / length;
+  out->shear = (tangent[0] * jump[0] + tangent[1] * jump[1]) / length;
+  open = out->normal >= 0.0 ? 1.0 : 0.0;
+  pressed = 1.0 - open;
+  out->q = Form(jump, tangent, open, beta * beta - open, out->dq, out->ddq);
+  out->r = Form(jump, tangent, pressed, -pressed, out->dr, out->ddr);
 }
 
 PetscReal LamJumpMode(const LamJump *jump, PetscReal beta, PetscReal before)

@@ -13,7 +13,8 @@
   Potential of a step from kappa_n, the work of T less what was dissipated before:
     phi = 1/2 omega k delta^2 + D(kappa) - D(kappa_n),    kappa = max(kappa_n, delta),
     D(kappa) = int_0^kappa T - 1/2 T(kappa) kappa         dissipated energy
-  It is C1 in delta.
+  It is C1 in delta. A lamella that is undamaged at the start of the step resists compression as it does tension, by
+  1/2 k <-delta_n>^2, without damage: the law is then linear through zero. Damaged, it leaves compression to contact.
 
   References. Ortiz & Pandolfi, Int. J. Numer. Meth. Engng 44 (1999) 1267; Benzeggagh & Kenane, Compos. Sci. Technol. 56
   (1996) 439.
@@ -51,7 +52,8 @@ PetscReal LamEnvelopeSpent(const LamEnvelope *envelope, PetscReal kappa);
    their outside to the right. */
 typedef struct {
   PetscReal q, dq[4], ddq[4][4];
-  PetscReal normal, shear; /* delta_n and delta_t */
+  PetscReal r, dr[4], ddr[4][4]; /* <-delta_n>^2, likewise */
+  PetscReal normal, shear;       /* delta_n and delta_t */
 } LamJump;
 void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscReal beta, LamJump *out);
 /* B of a jump; `before` where there is none. */

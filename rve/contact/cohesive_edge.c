@@ -21,6 +21,7 @@ void LamBondTake(const LamBondHistory *history, LamBond *bond)
   bond->before = *history;
   bond->now = LamEnvelopeOf(&bond->law, history->mode);
   bond->kappa = LamEnvelopeReach(&bond->now, history->integrity);
+  bond->pressing = LamBondIsUndamaged(bond) ? bond->law.stiffness : 0.0;
 }
 
 LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCohesiveStep *step)
@@ -68,21 +69,25 @@ void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscI
   Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
 }
 
-/* Adds the derivatives of w phi(q(z)). */
-static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal w,
+/* Adds w (phi(q(z)) + 1/2 pressing r(z)) and its derivatives. */
+static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal pressing, PetscReal w,
                      const PetscReal weight[LAM_EDGE_NODES][2], LamCohesiveSum *sum)
 {
-  PetscReal H[4][4];
+  const PetscReal half = 0.5 * pressing;
+  PetscReal t[4], H[4][4];
 
-  for (PetscInt a = 0; a < 4; ++a)
-    for (PetscInt b = 0; b < 4; ++b) H[a][b] = step->dd * jump->dq[a] * jump->dq[b] + step->d * jump->ddq[a][b];
-  sum->energy += w * step->phi;
+  for (PetscInt a = 0; a < 4; ++a) {
+    t[a] = step->d * jump->dq[a] + half * jump->dr[a];
+    for (PetscInt b = 0; b < 4; ++b)
+      H[a][b] = step->dd * jump->dq[a] * jump->dq[b] + step->d * jump->ddq[a][b] + half * jump->ddr[a][b];
+  }
+  sum->energy += w * (step->phi + half * jump->r);
   for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
     const PetscInt d = i % 2;
     const PetscReal jumping = w * weight[i / 2][0], turning = w * weight[i / 2][1];
     PetscReal row[4];
 
-    sum->f[i] += step->d * (jumping * jump->dq[d] + turning * jump->dq[2 + d]);
+    sum->f[i] += jumping * t[d] + turning * t[2 + d];
     for (PetscInt b = 0; b < 4; ++b) row[b] = jumping * H[d][b] + turning * H[2 + d][b];
     for (PetscInt j = 0; j < LAM_EDGE_DOFS; ++j)
       sum->K[i][j] += row[j % 2] * weight[j / 2][0] + row[2 + j % 2] * weight[j / 2][1];
@@ -100,6 +105,6 @@ void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBo
 
     WeighNodes(q, weight);
     Evaluate(X, u, (const PetscReal(*)[2])weight, &bonds[q], &jump, &step);
-    AddPoint(&jump, &step, length * share[q], (const PetscReal(*)[2])weight, sum);
+    AddPoint(&jump, &step, bonds[q].pressing, length * share[q], (const PetscReal(*)[2])weight, sum);
   }
 }

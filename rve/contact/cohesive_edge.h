@@ -3,7 +3,7 @@
 
   With the shape functions N of the three nodes of an edge, at the same reference place of both walls,
     jump = sum N (x_slave - x_master),    tangent = 1/2 sum N' (x_slave + x_master),
-  energy, forces and tangent are derivatives of sum_q w_q phi(q(jump, tangent)).
+  energy, forces and tangent are derivatives of sum_q w_q (phi(q) + 1/2 k r), q and r functions of (jump, tangent).
 */
 #ifndef LAM_RVE_COHESIVE_EDGE_H
 #define LAM_RVE_COHESIVE_EDGE_H
@@ -30,8 +30,9 @@ typedef struct {
 typedef struct {
   LamCohesive law;
   LamBondHistory before; /* at the start of the step, with ... */
-  LamEnvelope now;       /* ... its envelope */
-  PetscReal kappa;       /* ... and its kappa */
+  LamEnvelope now;       /* ... its envelope, ... */
+  PetscReal kappa;       /* ... its kappa, ... */
+  PetscReal pressing;    /* ... and its stiffness in compression */
 } LamBond;
 /* Begins a step. */
 void LamBondTake(const LamBondHistory *history, LamBond *bond);
@@ -40,6 +41,11 @@ LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCo
 static inline PetscReal LamBondSpent(const LamBond *bond, const LamCohesiveStep *step)
 {
   return LamEnvelopeSpent(&bond->now, step->kappa) - LamEnvelopeSpent(&bond->now, bond->kappa);
+}
+
+static inline PetscBool LamBondIsUndamaged(const LamBond *bond)
+{
+  return (PetscBool)(bond->before.integrity >= 1.0 && bond->now.strength > 0.0);
 }
 
 /* Reference positions X and displacements u of the nodes; the jump is that of the displacements. */

@@ -7,6 +7,10 @@
   applies: hardly any force between walls that do not face each other. If it fails, the smooth law is solved at the
   usual width, and the exact law is tried again. It is taken if it is a minimum of no higher energy; otherwise the
   smooth state is the answer.
+
+  A lamella gives way in kinks, which the iteration of the exact law does not pass without a search along its steps: the
+  state is that of the smooth law at its usual width, before the exact law is tried. Nor does it start elsewhere than at
+  the state before, to which its history belongs.
 */
 #include "contact_find.h"
 
@@ -184,7 +188,7 @@ PetscErrorCode LamContactFinish(LamRVE rve, const LamLoad *load, LamBorder *bord
     PetscFunctionReturn(0);
   }
   PetscCall(LamRVEStateCreate(rve, &at));
-  PetscCall(TryExact(rve, load, border, at, out));
+  if (!rve->layer) PetscCall(TryExact(rve, load, border, at, out));
   if (!LamIsExact(rve)) {
     PetscCall(Settle(rve, load, border, LAM_USUAL_WIDTH, out));
     if (out->found) PetscCall(TryExact(rve, load, border, at, out));
@@ -237,6 +241,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
 {
   const LamLoad guess = *LoadOf(load, border);
   const PetscBool near = (PetscBool)(before->solved && before->width > 0.0 && IsWithin(&before->load, &guess, NEAR));
+  const PetscInt starts = rve->layer && before->solved ? 1 : 2;
   PetscBool ok;
 
   PetscFunctionBeginUser;
@@ -246,18 +251,19 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
     if (LamContactIsStable(out)) PetscFunctionReturn(0);
   }
   if (rve->near_only) PetscFunctionReturn(0);
-  for (PetscInt k = before->solved ? 0 : 1; k < 2 && !out->found && !rve->work.stopped; ++k) {
+  for (PetscInt k = before->solved ? 0 : 1; k < starts && !out->found && !rve->work.stopped; ++k) {
+    const PetscReal width = rve->layer ? LAM_USUAL_WIDTH : k == 0 && near ? before->width : LAM_SEARCH_WIDTH;
+
     if (border) border->load = guess;
     ok = PETSC_TRUE;
     if (k == 0)
       LamContactStartNear(rve, before, &guess);
     else
       PetscCall(Start(rve, &guess, rve->strategy, &ok));
-    if (ok)
-      PetscCall(LamContactSearch(rve, load, border, k == 0 && near ? before->width : LAM_SEARCH_WIDTH, LOOSE, out));
+    if (ok) PetscCall(LamContactSearch(rve, load, border, width, LOOSE, out));
   }
   if (out->found) PetscCall(LamContactFinish(rve, load, border, out));
-  if (out->found && !border && !LamIsExact(rve) && WantsExact(rve, before))
+  if (out->found && !border && !LamIsExact(rve) && WantsExact(rve, before) && !rve->layer)
     PetscCall(KeepExact(rve, load, before, out));
   PetscFunctionReturn(0);
 }
