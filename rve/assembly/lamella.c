@@ -56,6 +56,7 @@ PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mes
     layer->bond[p].law =
         LawAt(&micro->lamella, strength, energy, (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length));
     layer->weight[p] = LamEdgeWeight(p % LAM_EDGE_POINTS) * contact->J0[e];
+    layer->toughness += layer->weight[p] * LamEnvelopeOf(&layer->bond[p].law, 0.0).energy / mesh->V0;
   }
   *out = layer;
   PetscFunctionReturn(0);

@@ -12,6 +12,7 @@
 #define FARTHEST 0.25   /* change of a component of F, turgor or cohesion (C1 + C2) beyond which nothing is said */
 #define SUSPICIOUS 0.02 /* share of the work that a jump must lose to be looked for, ... */
 #define HALVINGS 4
+#define STAYS 0.5 /* share of the defect that is left of a jump */
 
 void LamKeepEnergy(const LamResponse *response, LamRVEState state)
 {
@@ -132,7 +133,7 @@ PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, Lam
   PetscCall(Look(rve, before, high, &defect, &left));
   rve->looks_back = PETSC_FALSE;
   PetscCall(LamRVEStateDestroy(&high));
-  if (defect < 0.0 && left <= LAM_JUMP_STAYS * defect && left < -LAM_LEAST_LOSS) {
+  if (defect < 0.0 && left <= STAYS * defect && left < -LAM_LEAST_LOSS) {
     response->jumped = PETSC_TRUE;
     response->energy_released = -left;
   }

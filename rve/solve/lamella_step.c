@@ -5,9 +5,9 @@
   breaks what would have held. Energy tells: on a branch the change of Psi is the work of its derivatives, and a jump
   loses what is missing (contact_jump.c).
 
-  Method. A suspicious step is taken again in halves, and these again: on the branch of the exact law as far as it goes,
-  so that a jump is taken once, in the last and smallest part. The state is that at the end of them; what they lose is
-  `released`. Work is summed over the parts, so that
+  Method. A step that may have jumped, or breaks much, is taken again in halves, and these again: on the branch of the
+  exact law as far as it goes, so that a jump is taken once, in the last and smallest part. The state is that at the end
+  of them; what they lose is `released`. Work is summed over the parts, so that
 
     work = stored + dissipated + released
 
@@ -18,13 +18,29 @@
 #define HALVINGS 6
 /* A jump loses at least these shares of the energy dissipated in the step and of its turnover: less is curvature, in
    nine of ten suspicious steps of random programs. */
-#define LOST 0.03
+#define LOST 0.005
 #define LOST_TURNOVER 0.15
+#define STAYS                                                                                                          \
+  (1.0 / 16.0)   /* share of the defect of the whole step that the last part keeps of a jump; of curvature 4^-HALVINGS \
+                  */
+#define MOST 0.1 /* share of the lamella that one step may break; with more its curvature hides what a jump loses */
 
-static PetscBool MayHaveJumped(const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+static PetscBool BreaksMuch(LamRVE rve, const LamRVEState from, const LamRVEState to)
 {
+  return (PetscBool)(to->spent - from->spent > MOST * rve->layer->toughness);
+}
+
+/* Energies of different laws of contact differ a little. */
+static PetscBool HasJumped(LamRVE rve, const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+{
+  if (from->width != to->width && !BreaksMuch(rve, from, to)) return PETSC_FALSE;
   return (PetscBool)(-step->defect > LAM_LEAST_LOSS && -step->defect > LOST * (to->spent - from->spent) &&
                      -step->defect > LOST_TURNOVER * step->turnover);
+}
+
+static PetscBool IsTooLong(LamRVE rve, const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+{
+  return (PetscBool)(HasJumped(rve, from, to, step) || BreaksMuch(rve, from, to));
 }
 
 typedef struct {
@@ -38,7 +54,7 @@ typedef struct {
 static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, PetscInt halvings, Retracing *r)
 {
   const LamLoad middle = LamLoadBetween(&at->load, load, 0.5);
-  PetscBool solved, jumps;
+  PetscBool solved, too_long;
   LamRVEState end;
 
   PetscFunctionBeginUser;
@@ -47,21 +63,21 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, P
   rve->near_only = (PetscBool)(halvings > 0 && at->solved && at->width == 0.0);
   PetscCall(LamRVESolve(rve, load, end, &r->response));
   solved = (PetscBool)(r->response.status == LAM_CONVERGED);
-  jumps = rve->near_only;
+  too_long = rve->near_only;
   rve->near_only = PETSC_FALSE;
   r->iterations += r->response.newton_iterations;
   r->factorisations += r->response.factorisations;
   if (solved) {
     const LamStepWork step = LamStepWorkOf(at, end);
 
-    jumps = MayHaveJumped(at, end, &step);
-    if (!jumps || halvings == 0) {
-      if (jumps && step.defect < LAM_JUMP_STAYS * r->first) r->lost -= step.defect;
+    too_long = IsTooLong(rve, at, end, &step);
+    if (!too_long || halvings == 0) {
+      if (HasJumped(rve, at, end, &step) && step.defect < STAYS * r->first) r->lost -= step.defect;
       end->work = at->work + step.work;
       PetscCall(LamRVEStateCopy(end, at));
     }
   }
-  if (jumps && halvings > 0 && !rve->work.stopped) {
+  if (too_long && halvings > 0 && !rve->work.stopped) {
     PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
     if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, load, halvings - 1, r));
   }
@@ -91,7 +107,7 @@ static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, PetscReal defect
     *lost = r.lost;
   } else {
     PetscCall(LamTakeState(rve, state));
-    *lost = -defect;
+    *lost = PetscMax(0.0, -defect);
   }
   response->newton_iterations = r.iterations;
   response->factorisations = r.factorisations;
@@ -107,9 +123,9 @@ PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, L
   PetscFunctionBeginUser;
   if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
   state->work = before->work + step.work;
-  if (MayHaveJumped(before, state, &step)) {
-    lost = -step.defect;
-    if (retrace) PetscCall(TakeAgain(rve, before, step.defect, state, response, &lost));
+  if (HasJumped(rve, before, state, &step)) lost = -step.defect;
+  if (retrace && IsTooLong(rve, before, state, &step)) {
+    PetscCall(TakeAgain(rve, before, step.defect, state, response, &lost));
   }
   response->jumped = (PetscBool)(lost > LAM_LEAST_LOSS);
   if (response->jumped) {

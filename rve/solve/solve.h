@@ -105,7 +105,6 @@ typedef struct {
 } LamStepWork;
 LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to);
 #define LAM_LEAST_LOSS 1e-7 /* C1 + C2: below it Psi has few digits */
-#define LAM_JUMP_STAYS 0.5  /* share of the defect that halving the step leaves of a jump; of curvature less */
 /* Sets jumped and energy_released of the response of `state`, which was solved from `before`. */
 PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response);
 
