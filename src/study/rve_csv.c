@@ -45,7 +45,9 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
   out = run->csv.out;
   fputs("state,status", out);
   COLUMNS(PRINT_NAME)
-  if (run->readings) CURVE_COLUMNS(PRINT_NAME)
+  if (run->readings) {
+    CURVE_COLUMNS(PRINT_NAME)
+  }
   fputc('\n', out);
   PetscFunctionReturn(0);
 }
@@ -62,6 +64,8 @@ void LamRVECSVAdd(LamRVERun *run, const LamResponse *r)
   LamTestMeasures(&run->test, r, F, P);
   fprintf(out, "%d,%s", (int)run->solved, LamStatusNames[r->status]);
   COLUMNS(PRINT_VALUE)
-  if (run->readings) CURVE_COLUMNS(PRINT_VALUE)
+  if (run->readings) {
+    CURVE_COLUMNS(PRINT_VALUE)
+  }
   fputc('\n', out);
 }
