@@ -188,6 +188,30 @@ LAM_EXPORT PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, Pets
                                              PetscReal gap[], PetscReal pressure[]);
 
 /*
+  The lamella of a state at the same samples. It joins the points of both walls that coincide at rest. Any array may be
+  NULL.
+
+    across           [face][point][2]  current position of the point that `from` is joined to
+    damage           [face][point]  1 - integrity: share of the stiffness that is lost; 1: broken
+    broken           [face][point]  share of the fracture energy that is spent; its mean, weighted by that energy, is
+                                    broken_fraction of the response. A stiff lamella has lost most of its stiffness
+                                    long before
+    opening          [face][point]  jump across the face, in apothems (< 0: penetration)
+    slip             [face][point]  jump along the face, in apothems; > 0: the wall of the face's cell has moved
+                                    counter-clockwise around its cell, with respect to the wall across
+    normal_traction  [face][point]  traction of the lamella alone, without contact pressure, nominal (per reference
+    shear_traction   [face][point]  length), in C1 + C2: >= 0, and with the sign of the slip
+
+  Jumps are those of the nodes; the others are interpolated linearly between Gauss points. PETSC_ERR_ARG_WRONGSTATE:
+  the law of the interface is another one, which LamRVEGetInterfaceLaw tells.
+*/
+typedef struct {
+  PetscReal *across, *damage, *broken, *opening, *slip, *normal_traction, *shear_traction; /* the caller's */
+} LamRVELamella;
+LAM_EXPORT PetscErrorCode LamRVEGetInterfaceLaw(LamRVE rve, LamInterfaceLawType *law);
+LAM_EXPORT PetscErrorCode LamRVEGetLamella(LamRVE rve, LamRVEState state, const LamRVELamella *fields);
+
+/*
   A responder that solves one RVE per query. Borrows `rve`, which must outlive it. It keeps two states
   (LamRVEStateSize) for each of the material points 0..points-1, from which their next solves start; other points
   start from the reference. It can be sealed if `rve` can, and then only responds for the points that it keeps.

@@ -1,4 +1,4 @@
-/* Gaps and contact pressures along the interfaces, for pictures and profiles. */
+/* Gaps, contact pressures and the lamella along the interfaces, for pictures and profiles. */
 #include "rve_impl.h"
 #include "mortar_impl.h"
 
@@ -9,6 +9,13 @@ PetscErrorCode LamRVEGetInterfaceSize(LamRVE rve, PetscInt *faces, PetscInt *poi
   PetscFunctionBeginUser;
   *faces = rve->contact ? rve->contact->face_count : 0;
   *points = POINTS_PER_EDGE * rve->mesh.along + 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEGetInterfaceLaw(LamRVE rve, LamInterfaceLawType *law)
+{
+  PetscFunctionBeginUser;
+  *law = rve->micro.interface;
   PetscFunctionReturn(0);
 }
 
@@ -72,5 +79,92 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
         pressure[k] = edge < 0 ? 0.0 : PressureAt(contact, &state->lambda[f * contact->hats], s, Xs, state->load.F[8]);
     }
   }
+  PetscFunctionReturn(0);
+}
+
+/* ---- the lamella ---- */
+
+/* What is known at Gauss points. */
+enum { DAMAGE, BROKEN, NORMAL, SHEAR, POINT_FIELDS };
+
+typedef struct {
+  const LamLayer *layer;
+  LamRVEState state;
+  PetscReal *value[POINT_FIELDS]; /* [point] */
+} LayerPoints;
+
+/* Of the state's own history: the layer's is that of the last solve. */
+static void KeepPoint(void *ctx, const LamBondPoint *at)
+{
+  const LayerPoints *points = (const LayerPoints *)ctx;
+  const LamBondHistory *history = &points->state->history[at->point];
+  LamBond bond = points->layer->bond[at->point];
+  PetscReal integrity, secant;
+
+  LamBondTake(history, &bond);
+  integrity = bond.now.strength > 0.0 ? history->integrity : 0.0;
+  secant = integrity * bond.law.stiffness;
+  points->value[DAMAGE][at->point] = 1.0 - integrity;
+  points->value[BROKEN][at->point] =
+      bond.now.strength > 0.0 ? LamEnvelopeSpent(&bond.now, bond.kappa) / bond.now.energy : 1.0;
+  points->value[NORMAL][at->point] = secant * PetscMax(at->jump.normal, 0.0);
+  points->value[SHEAR][at->point] = secant * PetscSqr(bond.law.beta) * at->jump.shear;
+}
+
+static PetscReal PointPlace(PetscInt p)
+{
+  return (PetscReal)(p / LAM_EDGE_POINTS) + LamEdgePlace(p % LAM_EDGE_POINTS);
+}
+
+/* value [LAM_EDGE_POINTS along] of the points of a face: linear between them, constant towards the ends. */
+static PetscReal Between(const PetscReal value[], PetscInt along, PetscReal s)
+{
+  const PetscInt count = LAM_EDGE_POINTS * along;
+  PetscInt next = 0;
+  PetscReal u;
+
+  while (next < count && PointPlace(next) < s) ++next;
+  if (next == 0 || next == count) return value[next ? count - 1 : 0];
+  u = (s - PointPlace(next - 1)) / (PointPlace(next) - PointPlace(next - 1));
+  return (1.0 - u) * value[next - 1] + u * value[next];
+}
+
+static void SampleFace(LamRVE rve, const LayerPoints *points, PetscInt f, const LamRVELamella *fields)
+{
+  const LamRVEState state = points->state;
+  const LamMortarChains chains = LamContactChains(rve, state->load.F, state->y, f);
+  const LamMortarChains other = {.n = chains.m, .x = chains.y}; /* runs the other way */
+  const PetscInt along = rve->mesh.along, samples = POINTS_PER_EDGE * along + 1;
+  PetscReal *const sampled[POINT_FIELDS] = {fields->damage, fields->broken, fields->normal_traction,
+                                            fields->shear_traction};
+
+  for (PetscInt i = 0; i < samples; ++i) {
+    const PetscReal s = (PetscReal)i / POINTS_PER_EDGE;
+    const PetscInt edge = PetscMin(i / POINTS_PER_EDGE, along - 1), to = f * samples + i;
+    PetscReal tangent[2], x[2];
+    LamJump jump;
+
+    LamMortarSlavePoint(&other, (PetscReal)along - s, x, tangent);
+    for (PetscInt d = 0; d < 2 && fields->across; ++d) fields->across[2 * to + d] = x[d];
+    LamLayerJump(rve, state->load.F, state->y, f * along + edge, s - (PetscReal)edge, &jump);
+    if (fields->opening) fields->opening[to] = jump.normal;
+    if (fields->slip) fields->slip[to] = jump.shear;
+    for (PetscInt k = 0; k < POINT_FIELDS; ++k)
+      if (sampled[k]) sampled[k][to] = Between(&points->value[k][LAM_EDGE_POINTS * along * f], along, s);
+  }
+}
+
+PetscErrorCode LamRVEGetLamella(LamRVE rve, LamRVEState state, const LamRVELamella *fields)
+{
+  LayerPoints points = {.layer = rve->layer, .state = state};
+
+  PetscFunctionBeginUser;
+  PetscCheck(rve->layer, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "the tissue has no lamella: law %s",
+             LamInterfaceLawNames[rve->micro.interface]);
+  PetscCall(PetscMalloc1(POINT_FIELDS * rve->layer->count, &points.value[0]));
+  for (PetscInt k = 1; k < POINT_FIELDS; ++k) points.value[k] = points.value[0] + k * rve->layer->count;
+  LamLayerVisitPoints(rve, state->load.F, state->y, KeepPoint, &points);
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) SampleFace(rve, &points, f, fields);
+  PetscCall(PetscFree(points.value[0]));
   PetscFunctionReturn(0);
 }

@@ -158,6 +158,17 @@ void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
   }
 }
 
+void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt edge, PetscReal s, LamJump *jump)
+{
+  PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
+  LamEdgeBlock block;
+
+  SetBlock(rve, edge, &block);
+  GatherEdge(rve, F, y, &block, u, X);
+  LamEdgeJump((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, s, rve->layer->bond[LAM_EDGE_POINTS * edge].law.beta,
+              jump);
+}
+
 typedef struct {
   const LamLayer *layer;
   PetscReal sum;

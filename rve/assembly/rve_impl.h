@@ -9,7 +9,7 @@
     interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
     smooth_pressures.c  contact pressures and penetrations of the smooth law
-    interface.c    gaps and pressures for pictures
+    interface.c    gaps, pressures and the lamella for pictures
 
   Unknowns are the current positions y of node classes; class 0 is prescribed, so unknown = 2 (class - 1) + component.
   An RVE that can be sealed also has the pressure of each lumen: in y after the positions, in the matrix after all
@@ -233,6 +233,8 @@ void LamLayerSetMatrix(LamRVE rve);
 void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdgeVisitor visitor, void *ctx);
 /* And for all points, without them. */
 void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamBondVisitor visitor, void *ctx);
+/* The jump at place s in [0, 1] of an edge (first point over LAM_EDGE_POINTS). */
+void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt edge, PetscReal s, LamJump *jump);
 PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Adds energy, residual and tangent. */
 void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);

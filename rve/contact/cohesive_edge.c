@@ -33,10 +33,9 @@ LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCo
   return history;
 }
 
-/* What jump and tangent of point q depend on: z = sum weight[k] x_k. */
-static void WeighNodes(PetscInt q, PetscReal weight[LAM_EDGE_NODES][2])
+/* What jump and tangent at place s depend on: z = sum weight[k] x_k. */
+static void WeighNodes(PetscReal s, PetscReal weight[LAM_EDGE_NODES][2])
 {
-  const PetscReal s = place[q];
   const PetscReal N[3] = {(1.0 - s) * (1.0 - 2.0 * s), 4.0 * s * (1.0 - s), s * (2.0 * s - 1.0)};
   const PetscReal dN[3] = {4.0 * s - 3.0, 4.0 - 8.0 * s, 4.0 * s - 1.0};
 
@@ -46,8 +45,8 @@ static void WeighNodes(PetscInt q, PetscReal weight[LAM_EDGE_NODES][2])
   }
 }
 
-static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const PetscReal weight[LAM_EDGE_NODES][2],
-                     const LamBond *bond, LamJump *jump, LamCohesiveStep *step)
+static void FindJump(const PetscReal X[][2], const PetscReal u[][2], const PetscReal weight[LAM_EDGE_NODES][2],
+                     PetscReal beta, LamJump *jump)
 {
   PetscReal difference[2] = {0.0}, tangent[2] = {0.0};
 
@@ -56,7 +55,21 @@ static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const Petsc
       difference[d] += weight[k][0] * u[k][d];
       tangent[d] += weight[k][1] * (X[k][d] + u[k][d]);
     }
-  LamJumpEvaluate(difference, tangent, bond->law.beta, jump);
+  LamJumpEvaluate(difference, tangent, beta, jump);
+}
+
+void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, PetscReal beta, LamJump *jump)
+{
+  PetscReal weight[LAM_EDGE_NODES][2];
+
+  WeighNodes(s, weight);
+  FindJump(X, u, (const PetscReal(*)[2])weight, beta, jump);
+}
+
+static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const PetscReal weight[LAM_EDGE_NODES][2],
+                     const LamBond *bond, LamJump *jump, LamCohesiveStep *step)
+{
+  FindJump(X, u, weight, bond->law.beta, jump);
   LamCohesiveStepEvaluate(&bond->now, bond->kappa, jump->q, step);
 }
 
@@ -65,7 +78,7 @@ void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscI
 {
   PetscReal weight[LAM_EDGE_NODES][2];
 
-  WeighNodes(q, weight);
+  WeighNodes(place[q], weight);
   Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
 }
 
@@ -103,7 +116,7 @@ void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBo
     LamCohesiveStep step;
     LamJump jump;
 
-    WeighNodes(q, weight);
+    WeighNodes(place[q], weight);
     Evaluate(X, u, (const PetscReal(*)[2])weight, &bonds[q], &jump, &step);
     AddPoint(&jump, &step, bonds[q].pressing, length * share[q], (const PetscReal(*)[2])weight, sum);
   }

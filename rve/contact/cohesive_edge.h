@@ -52,6 +52,9 @@ static inline PetscBool LamBondIsUndamaged(const LamBond *bond)
 void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
                           LamJump *jump, LamCohesiveStep *step);
 
+/* The jump alone, at a place s in [0, 1] of the edge. */
+void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, PetscReal beta, LamJump *jump);
+
 typedef struct {
   PetscReal energy, f[LAM_EDGE_DOFS], K[LAM_EDGE_DOFS][LAM_EDGE_DOFS]; /* dof = 2 node + component */
 } LamCohesiveSum;
