@@ -91,19 +91,30 @@ PetscErrorCode LamPrintJSON(json_t *object)
   PetscFunctionReturn(0);
 }
 
+/* The columns of tissue whose cells can part; `broken` is of law lamella. */
+static void PrintContactHeader(LamInterfaceLawType interface, const char *const texts[7])
+{
+  if (!LamCellsPart(interface)) return;
+  printf(" %9s %9s %8s", texts[0], texts[1], texts[2]);
+  if (interface == LAM_INTERFACE_LAMELLA) printf(" %8s", texts[3]);
+  printf(" %8s %9s %8s", texts[4], texts[5], texts[6]);
+}
+
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource source)
 {
-  const PetscBool contact = LamCellsPart(interface), solve = (PetscBool)(source == LAM_SOURCE_SOLVE);
+  static const char *const names[7] = {"cohesion", "opening", "debonded", "broken", "open", "largest", "floating"};
+  static const char *const units[7] = {"MPa", "of V0", "share", "share", "share", "gap/a", "cells"};
+  const PetscBool solve = (PetscBool)(source == LAM_SOURCE_SOLVE);
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
-  if (contact) printf(" %9s %9s %8s %8s %9s %8s", "cohesion", "opening", "debonded", "open", "largest", "floating");
+  PrintContactHeader(interface, names);
   printf(" %s\n", solve ? "iter.     time    error" : "error est. indicators     time");
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "", "", "", "", "", "MPa", "", "MPa", "MPa",
          "MPa", "MPa", "of V0", "MPa");
-  if (contact) printf(" %9s %9s %8s %8s %9s %8s", "MPa", "of V0", "share", "share", "gap/a", "cells");
+  PrintContactHeader(interface, units);
   printf(" %s\n", solve ? "            ms        %" : "         %                  us");
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
@@ -126,14 +137,14 @@ PetscReal LamWithoutNoise(PetscReal value)
   return fabs(value) < NOISE ? 0 : value;
 }
 
-/* The columns of contact tissue. */
-static void PrintContact(const LamResponse *response, PetscReal MPa)
+static void PrintContact(const LamResponse *response, LamInterfaceLawType interface, PetscReal MPa)
 {
   const PetscReal floating = response->floating_cells == LAM_UNKNOWN_COUNT ? NAN : (PetscReal)response->floating_cells;
 
   LamPrintColumn(9, 4, 'g', response->load.cohesion * MPa);
   LamPrintColumn(9, 2, 'e', response->opening_fraction);
   LamPrintColumn(8, 4, 'f', response->debonded_fraction);
+  if (interface == LAM_INTERFACE_LAMELLA) LamPrintColumn(8, 4, 'f', response->broken_fraction);
   LamPrintColumn(8, 4, 'f', response->open_fraction);
   LamPrintColumn(9, 2, 'e', response->max_gap);
   LamPrintColumn(8, 0, 'f', floating);
@@ -203,7 +214,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   for (int k = 0; k < 4; k++) LamPrintColumn(10, 3, 'e', LamWithoutNoise(response->P[in_plane[k]]) * MPa);
   LamPrintColumn(6, 4, 'f', response->lumen_fraction);
   LamPrintColumn(10, 3, 'e', response->max_traction * MPa);
-  if (LamCellsPart(interface)) PrintContact(response, MPa);
+  if (LamCellsPart(interface)) PrintContact(response, interface, MPa);
   PrintTail(response);
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)

@@ -26,6 +26,12 @@
   X("max_gap (apothem)", r->max_gap)                                                                                   \
   X("max_traction (MPa)", (r->max_traction) * MPa)                                                                     \
   X("error_estimate", r->error_estimate)
+/* Those of law `lamella`. */
+#define LAMELLA_COLUMNS(X)                                                                                             \
+  X("broken_fraction", r->broken_fraction)                                                                             \
+  X("stored (kJ/m^3)", (r->stored) * MPa * 1e3)                                                                        \
+  X("dissipated (kJ/m^3)", (r->dissipated) * MPa * 1e3)                                                                \
+  X("released (kJ/m^3)", (r->released) * MPa * 1e3)
 #define CURVE_COLUMNS(X)                                                                                               \
   X("strain", p->strain)                                                                                               \
   X("stress (MPa)", (p->stress) * MPa)                                                                                 \
@@ -36,6 +42,11 @@
 #define PRINT_NAME(name, value) fputs("," name, out);
 #define PRINT_VALUE(name, value) LamBesideNumber(out, value);
 
+static PetscBool HasLamella(const LamRVERun *run)
+{
+  return (PetscBool)(run->scene->micro.interface == LAM_INTERFACE_LAMELLA);
+}
+
 PetscErrorCode LamRVECSVOpen(LamRVERun *run)
 {
   FILE *out;
@@ -45,6 +56,9 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
   out = run->csv.out;
   fputs("state,status", out);
   COLUMNS(PRINT_NAME)
+  if (HasLamella(run)) {
+    LAMELLA_COLUMNS(PRINT_NAME)
+  }
   if (run->readings) {
     CURVE_COLUMNS(PRINT_NAME)
   }
@@ -64,6 +78,9 @@ void LamRVECSVAdd(LamRVERun *run, const LamResponse *r)
   LamTestMeasures(&run->test, r, F, P);
   fprintf(out, "%d,%s", (int)run->solved, LamStatusNames[r->status]);
   COLUMNS(PRINT_VALUE)
+  if (HasLamella(run)) {
+    LAMELLA_COLUMNS(PRINT_VALUE)
+  }
   if (run->readings) {
     CURVE_COLUMNS(PRINT_VALUE)
   }

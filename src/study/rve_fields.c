@@ -80,6 +80,38 @@ static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[],
   PetscFunctionReturn(0);
 }
 
+/* Writes the lamella at these samples; other laws have none. */
+static PetscErrorCode WriteLamella(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
+                                   PetscReal MPa)
+{
+  LamRVELamella lamella;
+  LamInterfaceLawType law;
+  PetscInt dims[3] = {0, 0, 2}, n;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEGetInterfaceLaw(rve, &law));
+  if (law != LAM_INTERFACE_LAMELLA) PetscFunctionReturn(0);
+  PetscCall(LamRVEGetInterfaceSize(rve, &dims[0], &dims[1]));
+  n = dims[0] * dims[1];
+  PetscCall(PetscMalloc7(2 * n, &lamella.across, n, &lamella.damage, n, &lamella.broken, n, &lamella.opening, n,
+                         &lamella.slip, n, &lamella.normal_traction, n, &lamella.shear_traction));
+  PetscCall(LamRVEGetLamella(rve, state, &lamella));
+  for (PetscInt i = 0; i < n; i++) {
+    lamella.normal_traction[i] *= MPa;
+    lamella.shear_traction[i] *= MPa;
+  }
+  PetscCall(WriteReals(writer, group, "interface/across", 3, dims, lamella.across, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/damage", 2, dims, lamella.damage, "1"));
+  PetscCall(WriteReals(writer, group, "interface/broken", 2, dims, lamella.broken, "1"));
+  PetscCall(WriteReals(writer, group, "interface/opening", 2, dims, lamella.opening, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/slip", 2, dims, lamella.slip, "apothem"));
+  PetscCall(WriteReals(writer, group, "interface/normal_traction", 2, dims, lamella.normal_traction, "MPa"));
+  PetscCall(WriteReals(writer, group, "interface/shear_traction", 2, dims, lamella.shear_traction, "MPa"));
+  PetscCall(PetscFree7(lamella.across, lamella.damage, lamella.broken, lamella.opening, lamella.slip,
+                       lamella.normal_traction, lamella.shear_traction));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVEWriteMode(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                PetscBool *written)
 {
@@ -117,6 +149,7 @@ PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], Lam
   PetscCall(WriteReals(writer, group, "wall_stress", 1, dims, stress, "MPa"));
   PetscCall(PetscFree3(x, fibre, stress));
   PetscCall(WriteInterface(writer, group, rve, state, MPa));
+  PetscCall(WriteLamella(writer, group, rve, state, MPa));
   PetscFunctionReturn(0);
 }
 

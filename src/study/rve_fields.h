@@ -11,7 +11,7 @@
 /* Writes <group>/nodes, elements, cell_of, period; for contact tissue interface_faces. */
 PetscErrorCode LamRVEWriteMesh(LamRecordWriter writer, const char group[], LamRVE rve);
 /* Writes <group>/x, fibre_stretch, wall_stress of a solved state; for contact tissue interface/from, to, gap,
-   pressure. */
+   pressure; of law `lamella` also what LamRVEGetLamella has. */
 PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
                                  const LamScales *scales);
 /* Writes <group>/softest_mode of a state that is not stable at its F; *written: whether it is such a state. */
