@@ -1,4 +1,4 @@
-/* Gaps and contact pressure in pictures: where they are drawn, and in which colour. */
+/* Gaps, contact pressure and the lamella in pictures: where they are drawn, and in which colour. */
 #include "support/test.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,11 +10,13 @@
 #define POINTS 7
 typedef struct {
   PetscReal from[POINTS][2], to[POINTS][2], gap[POINTS], pressure[POINTS];
+  PetscBool has_lamella;
+  PetscReal broken[POINTS]; /* of a lamella that joins from and to */
 } Samples;
 
 static Samples HalfOpen(void)
 {
-  Samples s;
+  Samples s = {.has_lamella = PETSC_FALSE};
 
   for (int i = 0; i < POINTS; i++) {
     const PetscReal x = -1.5 + 0.5 * i;
@@ -27,6 +29,21 @@ static Samples HalfOpen(void)
   return s;
 }
 
+/* Without pressure, with a lamella of which this share is broken. */
+static Samples Held(PetscReal broken)
+{
+  Samples s = HalfOpen();
+
+  s.has_lamella = PETSC_TRUE;
+  for (int i = 0; i < POINTS; i++) {
+    s.broken[i] = broken;
+    s.pressure[i] = 0;
+  }
+  return s;
+}
+
+#define LINE 2.0 /* width of the lamella, points; one is 1/18 of a unit */
+
 /* Draws the face in a PNG of 400 x 400 pixels, and reads the colour at (x, y). */
 static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
 {
@@ -37,6 +54,9 @@ static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
                                   .to = &s->to[0][0],
                                   .gap = s->gap,
                                   .pressure = s->pressure,
+                                  .has_lamella = s->has_lamella,
+                                  .across = &s->to[0][0],
+                                  .broken = s->broken,
                                   .largest_pressure = 2,
                                   .is_open = PETSC_TRUE,
                                   .gaps = {0, 0.5, {PETSC_FALSE, PETSC_FALSE}}};
@@ -48,7 +68,8 @@ static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
 
   assert_int_equal(LamCanvasCreate(path, 72, 72, &canvas), 0);
   LamViewFit((LamRect){0, 0, 72, 72}, box, &view);
-  LamInterfaceDrawPressure(canvas, &view, &interface, none);
+  LamInterfaceDrawPressure(canvas, &view, &interface, none, LINE);
+  LamInterfaceDrawLamella(canvas, &view, &interface, none, LINE);
   LamInterfaceDrawGaps(canvas, &view, &interface, none);
   assert_int_equal(LamCanvasFinish(&canvas), 0);
   surface = cairo_image_surface_create_from_png(path);
@@ -60,17 +81,22 @@ static uint32_t Pixel(Samples *s, PetscReal x, PetscReal y)
   return pixel & 0xffffff;
 }
 
+static void HasColour(Samples *s, PetscReal x, PetscReal y, LamColour wanted)
+{
+  const uint32_t pixel = Pixel(s, x, y);
+
+  assert_true(abs((int)(pixel >> 16) - (int)lround(255 * wanted.r)) <= 2);
+  assert_true(abs((int)(pixel >> 8 & 0xff) - (int)lround(255 * wanted.g)) <= 2);
+  assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
+}
+
 static const uint32_t white = 0xffffff;
 
 TEST(an_open_face_is_filled_with_the_colour_of_its_gap)
 {
   Samples s = HalfOpen();
-  const uint32_t pixel = Pixel(&s, -1, 0.25);
-  const LamColour wanted = LamGapColour(1);
 
-  assert_true(abs((int)(pixel >> 16) - (int)lround(255 * wanted.r)) <= 2);
-  assert_true(abs((int)(pixel >> 8 & 0xff) - (int)lround(255 * wanted.g)) <= 2);
-  assert_true(abs((int)(pixel & 0xff) - (int)lround(255 * wanted.b)) <= 2);
+  HasColour(&s, -1, 0.25, LamGapColour(1));
 }
 
 TEST(a_closed_face_shows_no_gap)
@@ -112,6 +138,58 @@ TEST(the_ribbon_is_as_wide_as_the_pressure)
   assert_int_not_equal(Pixel(&s, 1.4, -0.1), white);
   assert_int_equal(Pixel(&s, 0.5, 0.1), white);
   assert_int_not_equal(Pixel(&s, 0.5, 0.03), white);
+}
+
+TEST(an_intact_lamella_is_a_dark_line)
+{
+  Samples s = Held(0);
+
+  HasColour(&s, 1, 0, LamDarkInk);
+  assert_int_equal(Pixel(&s, 1, 0.1), white);
+}
+
+TEST(a_damaged_lamella_is_a_line_of_its_colour)
+{
+  Samples s = Held(0.5);
+
+  HasColour(&s, 1, 0, LamLamellaColour(0.5));
+}
+
+TEST(a_broken_lamella_is_a_white_line_between_dark_ones)
+{
+  Samples s = Held(1);
+
+  assert_int_equal(Pixel(&s, 1, 0), white);
+  HasColour(&s, 1, 1.2 / 18, LamDarkInk);
+  HasColour(&s, 1, -1.2 / 18, LamDarkInk);
+}
+
+TEST(what_still_holds_crosses_the_gap_in_threads)
+{
+  Samples s = Held(0.5);
+
+  HasColour(&s, -1, 0.25, LamLamellaColour(0.5));
+  HasColour(&s, -0.75, 0.25, LamGapColour(1));
+}
+
+TEST(nothing_crosses_the_gap_of_a_broken_lamella)
+{
+  Samples s = Held(1);
+
+  HasColour(&s, -1, 0.25, LamGapColour(1));
+}
+
+TEST(pressure_is_seen_beside_the_lamella)
+{
+  Samples s = Held(0);
+
+  s.pressure[5] = 0.2; /* a tenth of the largest */
+  assert_int_not_equal(Pixel(&s, 1, 1.75 / 18), white);
+}
+
+TEST(brightness_rises_as_the_lamella_breaks)
+{
+  for (int i = 1; i <= 50; i++) assert_true(LamLamellaColour(i / 50.0).g > LamLamellaColour((i - 1) / 50.0).g);
 }
 
 TEST(brightness_falls_along_the_colours_of_gaps)

@@ -5,7 +5,7 @@
     plot_axes.c      ticks, axes, curves, legends
     plot_colour.c    colour map, limits of colour scales, colour bars
     plot_field.c     views of the plane, fields on meshes of quadratic elements, scale bars
-    plot_interface.c gaps and contact pressure between cells
+    plot_interface.c gaps, contact pressure and lamella between cells
     plot_tissue.c    cells of an RVE with their images (plot_tissue.h); plot_cells.c: at several states
     plot_outline.c   edges and closed outlines of such meshes
     plot_curves.c    stress-load curves, and the state at their peak
@@ -108,6 +108,7 @@ void LamFormatRatio(PetscReal value, char text[32]);
 /* ---- plot_axes.c ---- */
 #define LAM_TEXT_SIZE 7.5  /* labels */
 #define LAM_TICK_SIZE 6.75 /* numbers at ticks, legends */
+#define LAM_KEY_ROW 10.0   /* between rows of a legend */
 
 /* Round numbers first + i*step, i = 0..count-1; labels show value / 10^exponent with `decimals`, or 10^value if the
    axis is logarithmic. */
@@ -256,11 +257,15 @@ double LamScaleBar(LamCanvas canvas, const LamView *view, double x, double y, do
                    const char unit[]);
 
 /* ---- plot_interface.c ---- */
-/* Samples along the faces of contact tissue at one state, as docs/reference/files.md describes them. */
+/* Samples along the faces of tissue whose cells can part, at one state, as docs/reference/files.md describes them. */
 typedef struct {
   PetscInt faces, points;    /* points of each face */
   PetscReal *from, *to;      /* [face][point][2]; owned */
   PetscReal *gap, *pressure; /* [face][point], apothems and MPa; owned */
+  PetscBool has_lamella;
+  /* with a lamella [face][point][2], the point that `from` is joined to; [face][point], share of its energy that is
+     spent; owned */
+  PetscReal *across, *broken;
   PetscReal largest_pressure;
   PetscBool is_open;   /* a gap exceeds LAM_VISIBLE_GAP */
   LamColourRange gaps; /* from 0 to the largest gap */
@@ -269,13 +274,19 @@ typedef struct {
 PetscErrorCode LamInterfaceRead(const char path[], const char group[], LamInterface *interface);
 PetscErrorCode LamInterfaceDestroy(LamInterface *interface);
 LamColour LamGapColour(PetscReal share);
-/* Draws one periodic image. */
+/* Of a lamella of whose energy this share is spent. */
+LamColour LamLamellaColour(PetscReal broken);
+/* Each draws one periodic image, pressure below the lamella, and gaps with its threads on top. width: of the lamella's
+   line, points, without its outlines. */
+void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamInterface *interface,
+                              const PetscReal shift[2], double width);
+void LamInterfaceDrawLamella(LamCanvas canvas, const LamView *view, const LamInterface *interface,
+                             const PetscReal shift[2], double width);
 void LamInterfaceDrawGaps(LamCanvas canvas, const LamView *view, const LamInterface *interface,
                           const PetscReal shift[2]);
-void LamInterfaceDrawPressure(LamCanvas canvas, const LamView *view, const LamInterface *interface,
-                              const PetscReal shift[2]);
-/* Legend of the ribbons, from (x, y) to the right. */
-void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, const LamInterface *interface);
+/* Legend of ribbons and lamella, from (x, y) to `right`; that of the lamella is in a second row where it has no room.
+ */
+void LamInterfaceDrawKey(LamCanvas canvas, double x, double y, double right, const LamInterface *interface);
 
 /* ---- plot_strip.c ---- */
 /* What pictures of several states share: the window, and the colours of a field and of gaps. */

@@ -65,6 +65,7 @@ PetscErrorCode LamCellsShare(LamCells *cells)
     ends[2 * k + 1] = range.high;
     frame->is_open = (PetscBool)(frame->is_open || tissue.interface.is_open);
     frame->gaps.high = PetscMax(frame->gaps.high, tissue.interface.gaps.high);
+    cells->has_lamella = tissue.interface.has_lamella;
     cells->pressure = PetscMax(cells->pressure, tissue.interface.largest_pressure);
     cells->is_periodic = LamTissueIsPeriodic(&tissue);
     LamBoxExtend(frame->box, tissue.node_count, tissue.x, NULL);
@@ -91,13 +92,15 @@ PetscErrorCode LamCellsDraw(LamCanvas canvas, const LamView *view, const LamCell
 
 void LamCellsKey(LamCanvas canvas, const LamView *view, const LamCells *cells)
 {
-  const LamInterface interface = {.largest_pressure = cells->pressure, .is_open = cells->frame.is_open};
+  const LamInterface interface = {
+      .largest_pressure = cells->pressure, .is_open = cells->frame.is_open, .has_lamella = cells->has_lamella};
   const double x = view->frame.x, y = view->frame.y + view->frame.height + 11;
 
   LamScaleBar(canvas, view, x, y, LAM_SCALE_BAR, 1e-6 / cells->of->scales.length, "µm");
   if (cells->is_periodic)
     LamCanvasText(canvas, x + view->frame.width, y, 1, 0, LAM_TICK_SIZE, "paler: periodic images");
-  if (LamCellsPart(cells->of->micro.interface)) LamInterfaceDrawKey(canvas, x, y + LAM_KEY_ROW, &interface);
+  if (LamCellsPart(cells->of->micro.interface))
+    LamInterfaceDrawKey(canvas, x, y + LAM_KEY_ROW, x + view->frame.width, &interface);
 }
 
 PetscErrorCode LamCellsDestroy(LamCells *cells)

@@ -385,7 +385,8 @@ static PetscErrorCode DrawFE2(const char output[], FE2Picture *p)
   PetscFunctionBeginUser;
   if (p->zooms.count) {
     left.height = zooms.height = ZoomHeight;
-    right = (LamRect){9, 25.2 + ZoomHeight + 34, LAM_PLOT_WIDTH - 17, CurveHeight};
+    right = (LamRect){9, 25.2 + ZoomHeight + 34 + (p->zooms.tissue[0].interface.has_lamella ? LAM_KEY_ROW : 0),
+                      LAM_PLOT_WIDTH - 17, CurveHeight};
     height = right.y + right.height + 4;
   }
   PetscCall(LamCanvasCreate(output, LAM_PLOT_WIDTH, height, &canvas));

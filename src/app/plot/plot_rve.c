@@ -111,7 +111,7 @@ static void Title(const RVEPicture *p, size_t size, char title[])
   LamFormatNumber(response->load.turgor * MPa, number);
   at += (size_t)snprintf(title + at, size - at, "],  turgor $p$ = %s MPa", number);
   LamFormatNumber(response->load.cohesion * MPa, number);
-  if (p->of.micro.interface != LAM_INTERFACE_BONDED)
+  if (p->of.micro.interface == LAM_INTERFACE_CONTACT || response->load.cohesion > 0)
     at += (size_t)snprintf(title + at, size - at, ",  cohesion $g$ = %s MPa", number);
   if (response->status == LAM_UNSTABLE) snprintf(title + at, size - at, "  (unstable)");
 }
@@ -126,7 +126,7 @@ static void DrawKey(LamCanvas canvas, const LamView *view, double right, const R
 
   LamUndeformedKey(canvas, f.x + bar, right, y,
                    LamTissueIsPeriodic(&p->tissue) ? "undeformed;  paler: periodic images" : "undeformed");
-  if (p->tissue.has_interface) LamInterfaceDrawKey(canvas, f.x, y + LAM_KEY_ROW, &p->tissue.interface);
+  if (p->tissue.has_interface) LamInterfaceDrawKey(canvas, f.x, y + LAM_KEY_ROW, right, &p->tissue.interface);
 }
 
 static PetscErrorCode DrawPanel(LamCanvas canvas, LamRect outer, const RVEPicture *p)

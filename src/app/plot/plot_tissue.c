@@ -12,6 +12,7 @@ static const LamWallField Fields[] = {
 
 static const LamColour Lumen = {0.90, 0.945, 0.97}, Reference = {0.80, 0.15, 0.05};
 static const PetscReal NeighbourFade = 0.55; /* fraction of white in the periodic images */
+static const double WidestLamella = 1.3;     /* points */
 static const double ThinnestWall = 1.5;      /* points in which the colours of a wall are still told apart */
 
 const char *LamPlotRVEField(size_t i)
@@ -267,6 +268,7 @@ PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTis
 {
   const LamField field = {t->element_count, t->x, t->elements, t->values, PETSC_FALSE};
   const double thickness = LeastThickness(t, view), widest = 0.25 * PetscMax(thickness, ThinnestWall);
+  const double lamella = PetscMin(WidestLamella, 1.6 * widest);
   const PetscBool thin =
       (PetscBool)(thickness < ThinnestWall); /* lumens' outlines would be in the middle of the wall */
   LamImage *images;
@@ -294,7 +296,8 @@ PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTis
     LamStrokeUndeformed(canvas);
   }
   for (PetscInt i = 0; i < count && t->has_interface; i++) {
-    LamInterfaceDrawPressure(canvas, view, &t->interface, images[i].shift);
+    LamInterfaceDrawPressure(canvas, view, &t->interface, images[i].shift, lamella);
+    LamInterfaceDrawLamella(canvas, view, &t->interface, images[i].shift, lamella);
     LamInterfaceDrawGaps(canvas, view, &t->interface, images[i].shift);
   }
   cairo_restore(LamCanvasCairo(canvas));

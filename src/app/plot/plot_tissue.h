@@ -37,7 +37,6 @@ void LamTissueCentreReference(const LamTissue *tissue, PetscReal shift[2]);
    show the gaps larger. */
 #define LAM_MARGIN 1.1
 #define LAM_CONTACT_MARGIN 0.5
-#define LAM_KEY_ROW 10.0 /* points between rows of a legend */
 /* Draws lumens, walls with their field, outlines, all inside the frame of the view. `reference`: shift of the
    undeformed outline; NULL: it is not drawn. */
 PetscErrorCode LamTissueDraw(LamCanvas canvas, const LamView *view, const LamTissue *tissue,
@@ -49,7 +48,8 @@ typedef struct {
   const LamWallField *field;
   PetscInt count, *states; /* indices in `of`; owned */
   LamFrame frame;
-  PetscReal pressure;    /* the largest contact pressure */
+  PetscReal pressure; /* the largest contact pressure */
+  PetscBool has_lamella;
   PetscBool is_periodic; /* the tissue */
 } LamCells;
 /* Finds the states; `state`: the number of the only one, LAM_PLOT_LAST, or LAM_PLOT_PEAK for all. */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double Gap = 9, KeyRow = 10, Marker = 3.2; /* points */
+static const double Gap = 9, Marker = 3.2; /* points */
 
 /* ---- reading ---- */
 
@@ -191,7 +191,9 @@ PetscErrorCode LamZoomsDraw(LamCanvas canvas, LamRect outer, const LamView *body
   for (PetscInt k = 0; k < z->count; k++) DrawMarker(canvas, body, &z->position[2 * k]);
   LamColourBar(canvas, all, &z->stress, LamColourMap, "largest principal Cauchy stress of walls", "MPa");
   LamScaleBar(canvas, &view, all.x, all.y + all.height + 11, LAM_SCALE_BAR, 1 / z->apothem[order[z->count - 1]], "µm");
-  if (z->has_interface) LamInterfaceDrawKey(canvas, all.x, all.y + all.height + 11 + KeyRow, &z->tissue[0].interface);
+  if (z->has_interface)
+    LamInterfaceDrawKey(canvas, all.x, all.y + all.height + 11 + LAM_KEY_ROW, outer.x + outer.width,
+                        &z->tissue[0].interface);
   if (!z->is_open) PetscFunctionReturn(0);
   all.width += LamColourBarWidth(canvas, &z->stress);
   LamColourBar(canvas, all, &z->gaps, LamGapColour, "gap", "apothems");
