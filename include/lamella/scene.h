@@ -113,11 +113,11 @@ LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
    the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
 LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
 #define LAM_LAMELLA_STIFFEST 1e7 /* (C1 + C2)/a: rounding of a coordinate is then a traction of about 1e-9 (C1 + C2) */
-/* The stiffness where none is given: the lamella adds 0.1 % to the strain of tissue, or less where 50 times the least
+/* The stiffness where none is given: the lamella costs 0.1 % of the tissue's stiffness, or less where 50 times the least
    stiffness is more; at most the stiffest. */
 LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
-/* What the lamella adds to the strain of tissue at rest, as a share of it: a stress P opens 1/(2a) lamellae per length
-   by P/k each, and tissue of stiffness E (LamStressScaleOf) strains by P/E. */
+/* What the compliance of the lamella costs of the tissue's stiffness, as a share of it: the change of the tangent at
+   rest against that of bonded tissue, Frobenius norms. */
 LAM_EXPORT PetscReal LamLamellaCompliance(const LamMicrostructure *micro);
 /*
   Length of the process zone, in apothems: that part of a wall beside the tip of a crack on which the lamella softens,

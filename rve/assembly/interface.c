@@ -99,7 +99,7 @@ static void KeepPoint(void *ctx, const LamBondPoint *at)
   const LayerPoints *points = (const LayerPoints *)ctx;
   const LamBondHistory *history = &points->state->history[at->point];
   LamBond bond = points->layer->bond[at->point];
-  PetscReal integrity, secant;
+  PetscReal integrity, secant, traction[2];
 
   LamBondTake(history, &bond);
   integrity = bond.now.strength > 0.0 ? history->integrity : 0.0;
@@ -107,8 +107,9 @@ static void KeepPoint(void *ctx, const LamBondPoint *at)
   points->value[DAMAGE][at->point] = 1.0 - integrity;
   points->value[BROKEN][at->point] =
       bond.now.strength > 0.0 ? LamEnvelopeSpent(&bond.now, bond.kappa) / bond.now.energy : 1.0;
-  points->value[NORMAL][at->point] = secant * PetscMax(at->jump.normal, 0.0);
-  points->value[SHEAR][at->point] = secant * PetscSqr(bond.law.beta) * at->jump.shear;
+  LamBondTraction(&bond, &at->jump, secant, traction);
+  points->value[NORMAL][at->point] = traction[0];
+  points->value[SHEAR][at->point] = traction[1];
 }
 
 static PetscReal PointPlace(PetscInt p)

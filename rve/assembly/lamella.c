@@ -131,7 +131,7 @@ void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdg
     SetBlock(rve, edge, &block);
     GatherEdge(rve, F, y, &block, u, X);
     LamEdgeEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, &layer->bond[first],
-                    rve->contact->J0[edge % rve->mesh.along], &block.sum);
+                    rve->contact->J0[edge % rve->mesh.along], layer->secant, &block.sum);
     visitor(ctx, &block);
   }
 }
@@ -248,6 +248,7 @@ void LamLayerTake(LamRVE rve, const LamRVEState state)
   LamLayer *layer = rve->layer;
 
   if (!layer) return;
+  layer->secant = PETSC_FALSE;
   layer->spent = state->spent;
   layer->released = state->released;
   layer->work = state->work;

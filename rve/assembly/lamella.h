@@ -15,6 +15,7 @@ typedef struct {
   PetscInt count;                    /* points: those of edge e of face f begin at LAM_EDGE_POINTS (f along + e) */
   LamBond *bond;                     /* [count] with the history at the start of the step */
   PetscReal *weight;                 /* [count] reference length */
+  PetscBool secant;                  /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
   PetscReal toughness;               /* energy of fracture in tension, per V0 */
   PetscReal spent, released, work;   /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix

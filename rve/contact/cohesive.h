@@ -13,8 +13,10 @@
   Potential of a step from kappa_n, the work of T less what was dissipated before:
     phi = 1/2 omega k delta^2 + D(kappa) - D(kappa_n),    kappa = max(kappa_n, delta),
     D(kappa) = int_0^kappa T - 1/2 T(kappa) kappa         dissipated energy
-  It is C1 in delta. A lamella that is undamaged at the start of the step resists compression as it does tension, by
-  1/2 k <-delta_n>^2, without damage: the law is then linear through zero. Damaged, it leaves compression to contact.
+  It is C1 in delta, and concave in q = delta^2: at fixed omega k its tangent is an upper bound, whose steps go down
+  where those of Newton's method find points on the other side of the kink at kappa_n. A lamella that is undamaged at
+  the start of the step resists compression as it does tension, by 1/2 k <-delta_n>^2, without damage: the law is then
+  linear through zero. Damaged, it leaves compression to contact.
 
   References. Ortiz & Pandolfi, Int. J. Numer. Meth. Engng 44 (1999) 1267; Benzeggagh & Kenane, Compos. Sci. Technol. 56
   (1996) 439.

@@ -108,7 +108,7 @@ static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal
 }
 
 void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
-                     LamCohesiveSum *sum)
+                     PetscBool secant, LamCohesiveSum *sum)
 {
   *sum = (LamCohesiveSum){0};
   for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
@@ -118,6 +118,7 @@ void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBo
 
     WeighNodes(place[q], weight);
     Evaluate(X, u, (const PetscReal(*)[2])weight, &bonds[q], &jump, &step);
+    if (secant) step.dd = 0.0;
     AddPoint(&jump, &step, bonds[q].pressing, length * share[q], (const PetscReal(*)[2])weight, sum);
   }
 }

@@ -48,6 +48,13 @@ static inline PetscBool LamBondIsUndamaged(const LamBond *bond)
   return (PetscBool)(bond->before.integrity >= 1.0 && bond->now.strength > 0.0);
 }
 
+/* Traction, nominal, normal to the middle between the walls and along it, for a secant stiffness omega k. */
+static inline void LamBondTraction(const LamBond *bond, const LamJump *jump, PetscReal secant, PetscReal t[2])
+{
+  t[0] = (jump->normal > 0.0 ? secant : bond->pressing) * jump->normal;
+  t[1] = secant * bond->law.beta * bond->law.beta * jump->shear;
+}
+
 /* Reference positions X and displacements u of the nodes; the jump is that of the displacements. */
 void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
                           LamJump *jump, LamCohesiveStep *step);
@@ -58,8 +65,8 @@ void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, Pe
 typedef struct {
   PetscReal energy, f[LAM_EDGE_DOFS], K[LAM_EDGE_DOFS][LAM_EDGE_DOFS]; /* dof = 2 node + component */
 } LamCohesiveSum;
-/* bonds [LAM_EDGE_POINTS]; length: reference length of the edge. */
+/* bonds [LAM_EDGE_POINTS]; length: reference length of the edge; secant: the tangent is that of fixed omega. */
 void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
-                     LamCohesiveSum *sum);
+                     PetscBool secant, LamCohesiveSum *sum);
 
 #endif

@@ -32,13 +32,13 @@ static void AddHolding(void *ctx, const LamBondPoint *point)
   const Holding *h = (const Holding *)ctx;
   const LamLayer *layer = h->rve->layer;
   const LamBond *bond = &layer->bond[point->point];
-  const PetscReal weight = layer->weight[point->point], secant = 2.0 * point->step.d;
+  const PetscReal weight = layer->weight[point->point];
   const PetscInt hat = point->face * h->rve->contact->hats + (PetscInt)(2.0 * point->at + 0.5);
+  PetscReal traction[2];
 
-  /* t = d phi/d jump: of the normal part 2 d delta_n where it is open, k delta_n where an undamaged one is pressed, of
-   * the tangential one 2 d beta^2 delta_t */
-  h->forces->normal[point->point] = weight * (point->jump.normal > 0.0 ? secant : bond->pressing) * point->jump.normal;
-  h->forces->shear[point->point] = weight * secant * bond->law.beta * bond->law.beta * point->jump.shear;
+  LamBondTraction(bond, &point->jump, 2.0 * point->step.d, traction); /* d phi/d q = omega k/2 */
+  h->forces->normal[point->point] = weight * traction[0];
+  h->forces->shear[point->point] = weight * traction[1];
   if (LamEnvelopeSpent(&bond->now, point->step.kappa) < BROKEN * bond->now.energy) h->forces->held[hat] += weight;
 }
 

@@ -16,6 +16,7 @@
 #include "solve.h"
 
 #define HALVINGS 6
+#define BUDGET 1000 /* iterations, after which what is left of a step is taken at once */
 /* A jump loses at least these shares of the energy dissipated in the step and of its turnover: less is curvature, in
    nine of ten suspicious steps of random programs. */
 #define LOST 0.005
@@ -43,6 +44,29 @@ static PetscBool IsTooLong(LamRVE rve, const LamRVEState from, const LamRVEState
   return (PetscBool)(HasJumped(rve, from, to, step) || BreaksMuch(rve, from, to));
 }
 
+/* Where a step goes: a load, and under prescribed stress P with guesses of the free components of F. */
+typedef struct {
+  LamLoad load;
+  const LamStressControl *given; /* NULL: all of F is given */
+  LamStressControl control;      /* its P */
+} Target;
+
+/* Half of the way there. */
+static Target Middle(const LamRVEState at, const Target *end)
+{
+  Target middle = *end;
+
+  middle.load = LamLoadBetween(&at->load, &end->load, 0.5);
+  for (PetscInt q = 0; q < LAM_F_COUNT && end->given; ++q) {
+    const PetscInt c = LamFComponent[q];
+
+    if (!end->given->given[c]) continue;
+    middle.load.F[c] = at->load.F[c];
+    middle.control.P[c] = 0.5 * (at->energy[1 + q] + end->control.P[c]);
+  }
+  return middle;
+}
+
 typedef struct {
   PetscReal first; /* defect of the whole step */
   PetscReal lost;  /* in jumps */
@@ -50,24 +74,38 @@ typedef struct {
   LamResponse response; /* of the last state */
 } Retracing;
 
-/* Takes the step from `at` to a load, in halves while it jumps; on return `at` is the state there. */
-static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, PetscInt halvings, Retracing *r)
+static PetscErrorCode SolveTarget(LamRVE rve, LamRVEState at, const Target *target, LamRVEState end, Retracing *r)
 {
-  const LamLoad middle = LamLoadBetween(&at->load, load, 0.5);
-  PetscBool solved, too_long;
+  LamLoad load = target->load;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCopy(at, end));
+  for (PetscInt i = 0; i < 9 && target->given; ++i)
+    if (target->given->given[i]) load.F[i] = at->load.F[i];
+  if (target->given)
+    PetscCall(LamRVESolveMixed(rve, &load, &target->control, end, &r->response));
+  else
+    PetscCall(LamRVESolve(rve, &load, end, &r->response));
+  r->iterations += r->response.newton_iterations;
+  r->factorisations += r->response.factorisations;
+  PetscFunctionReturn(0);
+}
+
+/* Takes the step from `at` to a target, in halves while it is too long; on return `at` is the state there. */
+static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, PetscInt halvings, Retracing *r)
+{
+  const Target middle = Middle(at, target);
+  PetscBool too_long;
   LamRVEState end;
 
   PetscFunctionBeginUser;
+  if (r->iterations > BUDGET) halvings = 0;
   PetscCall(LamRVEStateCreate(rve, &end));
-  PetscCall(LamRVEStateCopy(at, end));
   rve->near_only = (PetscBool)(halvings > 0 && at->solved && at->width == 0.0);
-  PetscCall(LamRVESolve(rve, load, end, &r->response));
-  solved = (PetscBool)(r->response.status == LAM_CONVERGED);
+  PetscCall(SolveTarget(rve, at, target, end, r));
   too_long = rve->near_only;
   rve->near_only = PETSC_FALSE;
-  r->iterations += r->response.newton_iterations;
-  r->factorisations += r->response.factorisations;
-  if (solved) {
+  if (r->response.status == LAM_CONVERGED) {
     const LamStepWork step = LamStepWorkOf(at, end);
 
     too_long = IsTooLong(rve, at, end, &step);
@@ -79,27 +117,29 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const LamLoad *load, P
   }
   if (too_long && halvings > 0 && !rve->work.stopped) {
     PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
-    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, load, halvings - 1, r));
+    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, target, halvings - 1, r));
   }
   PetscCall(LamRVEStateDestroy(&end));
   PetscFunctionReturn(0);
 }
 
 /* Replaces a state and its response by those at the end of smaller steps; where these fail, it stays. */
-static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, PetscReal defect, LamRVEState state,
-                                LamResponse *response, PetscReal *lost)
+static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const LamStressControl *control, PetscReal defect,
+                                LamRVEState state, LamResponse *response, PetscReal *lost)
 {
-  const LamLoad middle = LamLoadBetween(&before->load, &state->load, 0.5);
+  Target end = {.load = state->load, .given = control}, middle;
   Retracing r = {
       .first = defect, .iterations = response->newton_iterations, .factorisations = response->factorisations};
   LamRVEState at;
 
   PetscFunctionBeginUser;
+  if (control) end.control = *control;
+  middle = Middle(before, &end);
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
   rve->looks_back = PETSC_TRUE;
   PetscCall(Retrace(rve, at, &middle, HALVINGS - 1, &r));
-  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &state->load, HALVINGS - 1, &r));
+  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &end, HALVINGS - 1, &r));
   rve->looks_back = PETSC_FALSE;
   if (r.response.status == LAM_CONVERGED) {
     PetscCall(LamRVEStateCopy(at, state));
@@ -115,7 +155,8 @@ static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, PetscReal defect
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, LamRVEState state, LamResponse *response)
+PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressControl *control, LamRVEState state,
+                            LamResponse *response)
 {
   const LamStepWork step = LamStepWorkOf(before, state);
   PetscReal lost = 0.0;
@@ -123,10 +164,8 @@ PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, L
   PetscFunctionBeginUser;
   if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
   state->work = before->work + step.work;
-  if (HasJumped(rve, before, state, &step)) lost = -step.defect;
-  if (retrace && IsTooLong(rve, before, state, &step)) {
-    PetscCall(TakeAgain(rve, before, step.defect, state, response, &lost));
-  }
+  if (IsTooLong(rve, before, state, &step))
+    PetscCall(TakeAgain(rve, before, control, step.defect, state, response, &lost));
   response->jumped = (PetscBool)(lost > LAM_LEAST_LOSS);
   if (response->jumped) {
     response->energy_released = lost;

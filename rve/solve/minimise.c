@@ -9,6 +9,9 @@
   help. The energy never rises, so the iteration goes down to a minimum. Near a saddle the softest mode is added,
   downhill. Once the energy no longer resolves the steps, the residual decides.
 
+  A lamella that loads on and unloads at kinks is met by steps of an upper bound of its energy (cohesive.h) in turn with
+  Newton's, where these are short.
+
   With free components of F (border.h) the energy is L - V0 P.F, and the border's steps descend.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
@@ -22,6 +25,7 @@
 #define STEP_LIMIT 0.15  /* apothems; less than the depth to which walls know each other (touching.c) */
 #define LEAST_STEP 1e-6  /* least share of a step */
 #define ARMIJO 1e-4
+#define SHORT 0.3 /* share of a step below which a lamella's tangent is replaced by its upper bound */
 #define CORRECTIONS 2
 #define WORTH_CORRECTING 0.2 /* least share of a step that is corrected */
 #define IDLE 8               /* iterations without progress after which the last digits are reached */
@@ -188,6 +192,13 @@ static PetscErrorCode FindStep(Descent *d, PetscReal norm)
   PetscFunctionReturn(0);
 }
 
+/* A short step has met kinks of the lamella: the next one is that of the upper bound, and those after it are Newton's
+   again. */
+static void SwitchTangent(LamLayer *layer, PetscReal alpha)
+{
+  layer->secant = (PetscBool)(!layer->secant && alpha < SHORT);
+}
+
 static PetscErrorCode Create(LamRVE rve, const LamLoad *load, LamBorder *border, Descent *d)
 {
   PetscFunctionBeginUser;
@@ -204,6 +215,7 @@ static PetscErrorCode Destroy(Descent *d)
 {
   PetscFunctionBeginUser;
   if (d->border) d->border->descend = PETSC_FALSE;
+  if (d->rve->layer) d->rve->layer->secant = PETSC_FALSE;
   PetscCall(PetscFree5(d->y, d->step, d->stress, d->mode, d->image));
   PetscFunctionReturn(0);
 }
@@ -244,6 +256,7 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
       *outcome = LAM_NEWTON_CONVERGED;
     if (*outcome == LAM_NEWTON_CONVERGED) break;
     PetscCall(Search(&d, &alpha));
+    if (rve->layer) SwitchTangent(rve->layer, alpha);
     if (alpha == 0.0) {
       if (-d.slope <= d.rounding && norm <= LAM_ROUNDING_MARGIN * tolerance) *outcome = LAM_NEWTON_CONVERGED;
       break;

@@ -105,13 +105,13 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCreate(rve, &fast));
   PetscCall(LamRVEStateCopy(state, fast));
-  if (rve->layer) {
+  if (rve->layer && !rve->looks_back) {
     PetscCall(LamRVEStateCreate(rve, &before));
     PetscCall(LamRVEStateCopy(state, before));
   }
   PetscCall(LamMixedFast(rve, &guess, control, fast, response));
   if (LamResponseHasFields(response)) PetscCall(CheckStability(control, response));
-  if (response->status != LAM_CONVERGED && !LamWasStopped(response)) {
+  if (response->status != LAM_CONVERGED && !LamWasStopped(response) && !rve->near_only) {
     const PetscInt iterations = response->newton_iterations, factorisations = response->factorisations;
 
     PetscCall(LamMixedSafe(rve, &guess, control, state, &safe));
@@ -124,7 +124,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
     response->factorisations = factorisations + safe.factorisations;
   }
   if (LamResponseHasFields(response)) PetscCall(LamRVEStateCopy(fast, state));
-  if (before) PetscCall(LamLayerStep(rve, before, PETSC_FALSE, state, response));
+  if (before) PetscCall(LamLayerStep(rve, before, control, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   PetscCall(LamRVEStateDestroy(&fast));
   PetscFunctionReturn(0);

@@ -340,7 +340,7 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
-  if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, PETSC_TRUE, state, response));
+  if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, NULL, state, response));
   if (looks && !rve->layer) PetscCall(LamSeeJump(rve, before, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;

@@ -109,9 +109,9 @@ LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to);
 PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response);
 
 /* ---- lamella_step.c ---- */
-/* Completes a step of tissue with a lamella from `before`: work and jumps, in state and response. retrace: a suspicious
-   step is taken again in smaller ones, which replace `state` and its response. */
-PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, PetscBool retrace, LamRVEState state,
+/* Completes a step of tissue with a lamella from `before`: work and jumps, in state and response. A step that is too
+   long is taken again in smaller ones, which replace `state` and its response. control: prescribed stress, or NULL. */
+PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressControl *control, LamRVEState state,
                             LamResponse *response);
 
 /* ---- nested.c ---- */

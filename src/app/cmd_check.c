@@ -250,7 +250,7 @@ static void PrintLamella(const LamScene *scene, const LamMicrostructure *micro)
   printf("\n  failure    %s an opening of %.3g um, %.3g of the apothem; over about %.3g um along a wall\n",
          l->softening == LAM_SOFTENING_EXPONENTIAL ? "mostly until" : "at", (double)(1e6 * opening * scales->length),
          (double)opening, (double)(1e6 * zone * scales->length));
-  printf("  stiffness  %.4g MPa/mm (%s): adds about %.2g %% to the strain of the tissue\n",
+  printf("  stiffness  %.4g MPa/mm (%s): costs about %.2g %% of the tissue's stiffness\n",
          (double)(l->stiffness * StiffnessUnit(scales)), IsStiffnessChosen(micro) ? "chosen" : "as the scene says",
          (double)(100 * LamLamellaCompliance(micro)));
 }

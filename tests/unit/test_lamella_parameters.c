@@ -82,12 +82,12 @@ TEST(between_two_cells_the_smaller_factors_act)
   AssertLeast(&micro, 3.2);
 }
 
-TEST(the_default_stiffness_adds_a_thousandth)
+TEST(the_default_stiffness_costs_a_thousandth)
 {
   LamMicrostructure micro = Tissue();
 
   micro.lamella.stiffness = LamLamellaDefaultStiffness(&micro);
-  assert_near(micro.lamella.stiffness, 500 * 0.15 * 22 / pow(0.85, 1.2), 1e-10);
+  assert_near(micro.lamella.stiffness, 1000 * (1 + 0.8 * 9) * 1.3, 1e-9);
   assert_near(LamLamellaCompliance(&micro), 1e-3, 1e-16);
 }
 
