@@ -113,7 +113,7 @@ LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
    the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
 LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
 #define LAM_LAMELLA_STIFFEST 1e7 /* (C1 + C2)/a: rounding of a coordinate is then a traction of about 1e-9 (C1 + C2) */
-/* The stiffness where none is given: the lamella costs 0.1 % of the tissue's stiffness, or less where 50 times the least
+/* The stiffness where none is given: the lamella costs 0.08 % of the tissue's stiffness, or less where 50 times the least
    stiffness is more; at most the stiffest. */
 LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
 /* What the compliance of the lamella costs of the tissue's stiffness, as a share of it: the change of the tangent at

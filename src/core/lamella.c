@@ -5,7 +5,7 @@
 #include <lamella/scene.h>
 #include <math.h>
 
-#define SOFT 1e-3  /* share of the tissue's stiffness that a lamella may cost where its own is not given */
+#define SOFT 8e-4  /* share of the tissue's stiffness that a lamella may cost where its own is not given */
 #define STEEP 50.0 /* times the least stiffness: softening is then spread over 98 % of the opening at failure */
 
 /* strength^2/energy; 0 where nothing holds. */

@@ -29,7 +29,7 @@ static const LamKey lamella_keys[] = {
      .default_words = REQUIRED_BY_LAW, .example = "1 J/m^2",
      .help = "Energy that it takes in tension until nothing holds, per area at rest."},
     {STIFFNESS("rve.interface.stiffness"), INTO(LamScene, micro.lamella.stiffness), ABOVE(0),
-     .default_words = "costs 0.1 % of the tissue's stiffness, or less of a brittle lamella", .example = "1000 MPa/mm",
+     .default_words = "costs 0.08 % of the tissue's stiffness, or less of a brittle lamella", .example = "1000 MPa/mm",
      .help = "Traction over opening of the undamaged lamella; larger than strength^2/(2 fracture_energy), at most "
              "1e7 (C1 + C2)/apothem."},
     {MAP("rve.interface.shear"), .default_words = "as in tension",

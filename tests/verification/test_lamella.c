@@ -18,7 +18,6 @@ static void CheckTangent(Specimen *s, const LamLoad *load)
   CHECK(LamRVEStateCopy(s->state, end));
   CHECK(LamRVESolve(s->rve, load, end, &r));
   assert_int_equal(r.status, LAM_CONVERGED);
-  assert_near(r.contact_width, 0.0, 0.0);
   for (int k = 0; k < 5; k++) largest = fmax(largest, fabs(r.tangent[10 * components[k]]));
   for (int k = 0; k < 5; k++) {
     double difference[9] = {0};
@@ -52,18 +51,21 @@ static void FollowAndCheck(LamSoftening softening, double shear_energy, double t
 
   micro.lamella.softening = softening;
   micro.lamella.shear_energy *= shear_energy;
+  micro.sharpness = LAM_SHARPNESS_SMOOTH; /* one law of contact in all states */
+  micro.contact_width = LAM_USUAL_WIDTH;
   CHECK(SpecimenCreate(&micro, &s));
-  load = PlaneLoad(1.003, 0.002, 0, 1.006, turgor); /* undamaged but at corners */
+  load = PlaneLoad(1.003, 0.002, 0, 1.006, turgor);
   CHECK(SpecimenFollow(&s, &load, 1, &work));
-  load = PlaneLoad(1.004, 0.002, 0, 1.007, turgor);
+  load = PlaneLoad(1.004, 0.002, 0, 1.007, turgor); /* undamaged */
   CheckTangent(&s, &load);
-  load = PlaneLoad(1.05, 0.02, 0, 1.13, turgor); /* on the softening branch */
+  load = PlaneLoad(1.03, 0.015, 0, 1.06, turgor); /* on the softening branch */
   CHECK(SpecimenFollow(&s, &load, 5, &work));
   assert_true(s.response.dissipated > 1e-4);
-  load = PlaneLoad(1.051, 0.021, 0, 1.134, turgor);
+  load = PlaneLoad(1.0307, 0.0153, 0, 1.0615, turgor);
   CheckTangent(&s, &load);
-  load = PlaneLoad(1.04, 0.015, 0.01, 1.1, turgor); /* unloading */
+  load = PlaneLoad(1.02, 0.01, 0.01, 1.05, turgor); /* unloading */
   CheckTangent(&s, &load);
+  CHECK(SpecimenDestroy(&s));
 }
 
 TEST_IS(TangentIsThatOfTheStepBilinear, FollowAndCheck(LAM_SOFTENING_BILINEAR, 1.0, 0.0));
@@ -151,47 +153,46 @@ TEST(StiffLamellaTendsToBondedTissue)
   micro.interface = LAM_INTERFACE_BONDED;
   bonded = SolveAfter(micro, load);
   micro.interface = LAM_INTERFACE_LAMELLA;
-  micro.lamella.strength = micro.lamella.shear_strength = 1e4;
+  micro.lamella.strength = micro.lamella.shear_strength = 100.0;
   for (int k = 0; k < 2; k++) {
     LamResponse r;
 
-    micro.lamella.stiffness = k ? 1e5 : 1e4;
+    micro.lamella.stiffness = (k ? 30.0 : 3.0) * LamLamellaDefaultStiffness(&micro);
     r = SolveAfter(micro, load);
     assert_int_equal(r.status, LAM_CONVERGED);
     error[k] = StressError(r.P, bonded.P);
   }
-  print_message("bonded limit %g %g\n", error[0], error[1]);
   assert_true(error[0] < 1e-3);
-  assert_true(error[1] < 0.15 * error[0]);
+  assert_true(error[1] < 0.12 * error[0]);
 }
 
-/* The paper's cohesion g: strength g, no shear, without end. */
-TEST(EndlessLamellaWithoutShearTendsToCohesion)
+/* The paper's cohesion g acts at any gap, on the current area and in the voids of junctions; a lamella of strength g
+   without end acts on the reference area of faces. They agree where faces open without slip, by little. */
+TEST(EndlessLamellaTendsToCohesion)
 {
-  LamLoad load = PlaneLoad(1.25, 0.1, 0, 1.2, 0.1);
-  LamMicrostructure micro = LamellaTissue(1e8);
-  double error[2];
+  LamLoad load = PlaneLoad(1.0005, 0, 0, 1.0005, 0);
+  LamMicrostructure micro = LamellaTissue(1.0);
   LamResponse contact;
 
+  micro.wall_thickness = 0.4; /* cells that hardly bulge */
+  micro.wall.C4 = 0.0;
   micro.interface = LAM_INTERFACE_CONTACT;
-  load.cohesion = 0.05;
+  load.cohesion = 1e-4;
   contact = SolveAfter(micro, load);
   assert_int_equal(contact.status, LAM_CONVERGED);
   micro.interface = LAM_INTERFACE_LAMELLA;
-  micro.lamella.strength = load.cohesion;
-  micro.lamella.shear_strength = 0.0;
-  micro.lamella.energy = micro.lamella.shear_energy = 1e6;
+  micro.lamella.strength = micro.lamella.shear_strength = load.cohesion;
+  micro.lamella.energy = micro.lamella.shear_energy = 1e3;
   load.cohesion = 0.0;
-  for (int k = 0; k < 2; k++) {
+  for (double k = 10.0; k < 2e3; k *= 10.0) {
     LamResponse r;
 
-    micro.lamella.stiffness = k ? 1e4 : 1e3;
+    micro.lamella.stiffness = k;
     r = SolveAfter(micro, load);
     assert_int_equal(r.status, LAM_CONVERGED);
-    error[k] = StressError(r.P, contact.P);
+    assert_near(r.P[0], contact.P[0], 1e-3 * contact.P[0]);
+    assert_near(r.P[4], contact.P[4], 1e-3 * contact.P[4]);
   }
-  print_message("cohesion limit %g %g\n", error[0], error[1]);
-  assert_true(error[1] < 1e-3);
 }
 
 TEST(BrokenLamellaIsContactWithoutCohesion)
