@@ -73,42 +73,58 @@ PetscReal LamEnvelopeSpent(const LamEnvelope *e, PetscReal kappa)
   return 0.5 * e->strength * e->onset + e->range * (e->strength - T) - 0.5 * T * kappa;
 }
 
-/* whole jump.jump + shear delta_t^2 with delta_t^2 = p^2/m, p = jump.tangent and m = tangent.tangent, and its
-   derivatives in (jump, tangent). */
-static PetscReal Form(const PetscReal jump[2], const PetscReal tangent[2], PetscReal whole, PetscReal shear,
-                      PetscReal d[4], PetscReal dd[4][4])
+/* v^2/m with m = tangent.tangent, and its derivatives in (jump, tangent). */
+typedef struct {
+  PetscReal value, d[4], dd[4][4];
+} Square;
+
+/* v is bilinear: dv, and cross of jump [i] and tangent [j]. */
+static void SquareOf(PetscReal v, const PetscReal dv[4], const PetscReal cross[2][2], const PetscReal tangent[2],
+                     Square *out)
 {
-  const PetscReal m = tangent[0] * tangent[0] + tangent[1] * tangent[1];
-  const PetscReal p = jump[0] * tangent[0] + jump[1] * tangent[1];
+  const PetscReal m = tangent[0] * tangent[0] + tangent[1] * tangent[1], r = v / m;
+  const PetscReal g[4] = {dv[0], dv[1], dv[2] - 2.0 * r * tangent[0], dv[3] - 2.0 * r * tangent[1]}; /* m dr */
 
+  out->value = v * r;
+  for (PetscInt i = 0; i < 4; ++i) {
+    out->d[i] = r * (dv[i] + g[i]);
+    for (PetscInt j = 0; j < 4; ++j) out->dd[i][j] = 2.0 / m * g[i] * g[j];
+  }
   for (PetscInt i = 0; i < 2; ++i) {
-    d[i] = 2.0 * (whole * jump[i] + shear * p / m * tangent[i]);
-    d[2 + i] = 2.0 * shear * p / m * (jump[i] - p / m * tangent[i]);
+    out->dd[2 + i][2 + i] -= 2.0 * r * r;
     for (PetscInt j = 0; j < 2; ++j) {
-      const PetscReal one = i == j ? 1.0 : 0.0, tt = tangent[i] * tangent[j];
-
-      dd[i][j] = 2.0 * (whole * one + shear * tt / m);
-      dd[i][2 + j] = 2.0 * shear / m * (tangent[i] * jump[j] + p * one - 2.0 * p / m * tt);
-      dd[2 + j][i] = dd[i][2 + j];
-      dd[2 + i][2 + j] = 2.0 * shear / m *
-                         (jump[i] * jump[j] - p / m * (2.0 * (jump[i] * tangent[j] + tangent[i] * jump[j]) + p * one) +
-                          4.0 * p * p / (m * m) * tt);
+      out->dd[i][2 + j] += 2.0 * r * cross[i][j];
+      out->dd[2 + j][i] += 2.0 * r * cross[i][j];
     }
   }
-  return whole * (jump[0] * jump[0] + jump[1] * jump[1]) + shear * p * p / m;
 }
 
 void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscReal beta, LamJump *out)
 {
+  /* delta_n^2 = c^2/m and delta_t^2 = p^2/m, c = tangent x jump and p = tangent.jump: a sum of squares, in which small
+     openings keep their digits beside large slips */
+  static const PetscReal of_c[2][2] = {{0.0, -1.0}, {1.0, 0.0}}, of_p[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
+  const PetscReal dc[4] = {-tangent[1], tangent[0], jump[1], -jump[0]};
+  const PetscReal dp[4] = {tangent[0], tangent[1], jump[0], jump[1]};
+  const PetscReal c = tangent[0] * jump[1] - tangent[1] * jump[0], p = tangent[0] * jump[0] + tangent[1] * jump[1];
   const PetscReal length = PetscSqrtReal(tangent[0] * tangent[0] + tangent[1] * tangent[1]);
-  PetscReal open, pressed;
+  const PetscReal open = c >= 0.0 ? 1.0 : 0.0, pressed = 1.0 - open, weight = beta * beta;
+  Square n, t;
 
-  out->normal = (tangent[0] * jump[1] - tangent[1] * jump[0]) / length;
-  out->shear = (tangent[0] * jump[0] + tangent[1] * jump[1]) / length;
-  open = out->normal >= 0.0 ? 1.0 : 0.0;
-  pressed = 1.0 - open;
-  out->q = Form(jump, tangent, open, beta * beta - open, out->dq, out->ddq);
-  out->r = Form(jump, tangent, pressed, -pressed, out->dr, out->ddr);
+  SquareOf(c, dc, of_c, tangent, &n);
+  SquareOf(p, dp, of_p, tangent, &t);
+  out->normal = c / length;
+  out->shear = p / length;
+  out->q = open * n.value + weight * t.value;
+  out->r = pressed * n.value;
+  for (PetscInt i = 0; i < 4; ++i) {
+    out->dq[i] = open * n.d[i] + weight * t.d[i];
+    out->dr[i] = pressed * n.d[i];
+    for (PetscInt j = 0; j < 4; ++j) {
+      out->ddq[i][j] = open * n.dd[i][j] + weight * t.dd[i][j];
+      out->ddr[i][j] = pressed * n.dd[i][j];
+    }
+  }
 }
 
 PetscReal LamJumpMode(const LamJump *jump, PetscReal beta, PetscReal before)
