@@ -46,9 +46,9 @@ PetscReal LamEnvelopeReach(const LamEnvelope *e, PetscReal integrity)
   PetscReal x, c;
 
   if (integrity >= 1.0 || e->strength == 0.0) return e->onset;
+  if (integrity <= 0.0) return e->softening == LAM_SOFTENING_BILINEAR ? e->range : PETSC_INFINITY;
   if (e->softening == LAM_SOFTENING_BILINEAR)
     return e->onset * e->range / (e->onset + integrity * (e->range - e->onset));
-  if (integrity <= 0.0) return PETSC_INFINITY;
   /* omega kappa = delta_0 exp(-(kappa - delta_0)/range): x + log x = c for x = kappa/range, by Newton's method, which
      converges from below for this concave function */
   c = PetscLogReal(e->onset / (e->range * integrity)) + e->onset / e->range;

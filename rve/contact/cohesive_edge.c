@@ -33,7 +33,7 @@ LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCo
   return history;
 }
 
-/* What jump and tangent at place s depend on: z = sum weight[k] x_k. */
+/* What jump and tangent at a place depend on: z = sum weight[k] x_k. */
 static void WeighNodes(PetscReal s, PetscReal weight[LAM_EDGE_NODES][2])
 {
   const PetscReal N[3] = {(1.0 - s) * (1.0 - 2.0 * s), 4.0 * s * (1.0 - s), s * (2.0 * s - 1.0)};
@@ -73,12 +73,12 @@ static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const Petsc
   LamCohesiveStepEvaluate(&bond->now, bond->kappa, jump->q, step);
 }
 
-void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
+void LamEdgePlaceEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscReal at, const LamBond *bond,
                           LamJump *jump, LamCohesiveStep *step)
 {
   PetscReal weight[LAM_EDGE_NODES][2];
 
-  WeighNodes(place[q], weight);
+  WeighNodes(at, weight);
   Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
 }
 
@@ -107,18 +107,22 @@ static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal
   }
 }
 
+void LamEdgeAdd(const PetscReal X[][2], const PetscReal u[][2], PetscReal at, PetscReal w, const LamBond *bond,
+                LamCohesiveSum *sum)
+{
+  PetscReal weight[LAM_EDGE_NODES][2];
+  LamCohesiveStep step;
+  LamJump jump;
+
+  WeighNodes(at, weight);
+  Evaluate(X, u, (const PetscReal(*)[2])weight, bond, &jump, &step);
+  if (secant) step.dd = 0.0;
+  AddPoint(&jump, &step, bond->pressing, w, (const PetscReal(*)[2])weight, sum);
+}
+
 void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
                      PetscBool secant, LamCohesiveSum *sum)
 {
   *sum = (LamCohesiveSum){0};
-  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
-    PetscReal weight[LAM_EDGE_NODES][2];
-    LamCohesiveStep step;
-    LamJump jump;
-
-    WeighNodes(place[q], weight);
-    Evaluate(X, u, (const PetscReal(*)[2])weight, &bonds[q], &jump, &step);
-    if (secant) step.dd = 0.0;
-    AddPoint(&jump, &step, bonds[q].pressing, length * share[q], (const PetscReal(*)[2])weight, sum);
-  }
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) LamEdgeAdd(X, u, place[q], length * share[q], &bonds[q], secant, sum);
 }

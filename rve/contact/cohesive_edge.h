@@ -56,8 +56,13 @@ static inline void LamBondTraction(const LamBond *bond, const LamJump *jump, Pet
 }
 
 /* Reference positions X and displacements u of the nodes; the jump is that of the displacements. */
-void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
+void LamEdgePlaceEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscReal place, const LamBond *bond,
                           LamJump *jump, LamCohesiveStep *step);
+static inline void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscInt q, const LamBond *bond,
+                                        LamJump *jump, LamCohesiveStep *step)
+{
+  LamEdgePlaceEvaluate(X, u, LamEdgePlace(q), bond, jump, step);
+}
 
 /* The jump alone, at a place s in [0, 1] of the edge. */
 void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, PetscReal beta, LamJump *jump);
@@ -65,7 +70,11 @@ void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, Pe
 typedef struct {
   PetscReal energy, f[LAM_EDGE_DOFS], K[LAM_EDGE_DOFS][LAM_EDGE_DOFS]; /* dof = 2 node + component */
 } LamCohesiveSum;
-/* bonds [LAM_EDGE_POINTS]; length: reference length of the edge; secant: the tangent is that of fixed omega. */
+/* Adds the law at a place in [0, 1] with a weight, which is a length; what LamEdgeEvaluate sums over its rule. secant:
+   the tangent is that of fixed omega. */
+void LamEdgeAdd(const PetscReal X[][2], const PetscReal u[][2], PetscReal place, PetscReal weight, const LamBond *bond,
+                PetscBool secant, LamCohesiveSum *sum);
+/* bonds [LAM_EDGE_POINTS]; length: reference length of the edge. */
 void LamEdgeEvaluate(const PetscReal X[][2], const PetscReal u[][2], const LamBond bonds[], PetscReal length,
                      PetscBool secant, LamCohesiveSum *sum);
 

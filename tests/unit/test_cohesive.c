@@ -256,6 +256,7 @@ TEST(OpeningHasNormalAndShearOfTheFrame)
     assert_near(jump.normal, normal, 1e-15);
     assert_near(jump.shear, shear, 1e-15);
     assert_near(jump.q, pow(fmax(normal, 0.0), 2) + pow(beta * shear, 2), 1e-14);
+    assert_near(jump.r, pow(fmin(normal, 0.0), 2), 1e-14);
     assert_near(LamJumpMode(&jump, beta, -1.0), pow(beta * shear, 2) / jump.q, 1e-14);
   }
 }
@@ -277,7 +278,7 @@ TEST(DerivativesOfTheJump)
     const LamJump jump = JumpAt(it->z, it->beta);
 
     for (int i = 0; i < 4; i++) {
-      double dq = 0.0, ddq[4] = {0.0};
+      double dq = 0.0, dr = 0.0, ddq[4] = {0.0}, ddr[4] = {0.0};
 
       for (int k = 1; k <= 3; k++)
         for (int side = -1; side <= 1; side += 2) {
@@ -287,12 +288,17 @@ TEST(DerivativesOfTheJump)
           moved.z[i] += side * k * h;
           there = JumpAt(moved.z, it->beta);
           dq += side * central[k - 1] * there.q / h;
+          dr += side * central[k - 1] * there.r / h;
           for (int j = 0; j < 4; j++) ddq[j] += side * central[k - 1] * there.dq[j] / h;
+          for (int j = 0; j < 4; j++) ddr[j] += side * central[k - 1] * there.dr[j] / h;
         }
       assert_near(jump.dq[i], dq, 1e-9);
+      assert_near(jump.dr[i], dr, 1e-9);
       for (int j = 0; j < 4; j++) {
         assert_near(jump.ddq[i][j], ddq[j], 1e-8);
+        assert_near(jump.ddr[i][j], ddr[j], 1e-8);
         assert_near(jump.ddq[i][j], jump.ddq[j][i], 1e-14);
+        assert_near(jump.ddr[i][j], jump.ddr[j][i], 1e-14);
       }
     }
   }
@@ -456,6 +462,22 @@ TEST(ShearOfClosedFacesIsPureMode)
 
     Advance(&point, -0.1, 0.3 * law->strength / law->stiffness);
     assert_near(point.history.mode, 1.0, 1e-15);
+  }
+}
+
+TEST(OnlyUndamagedPointsResistCompression)
+{
+  FOR_LAWS(law)
+  {
+    const double onset = law->strength / law->stiffness;
+    Point point = Virgin(law, 0.0);
+
+    Advance(&point, 0.9 * onset, 0.0);
+    Advance(&point, -onset, 0.0);
+    assert_near(point.bond.pressing, law->stiffness, 0.0);
+    Advance(&point, 1.1 * onset, 0.0);
+    Advance(&point, -onset, 0.0);
+    assert_near(point.bond.pressing, 0.0, 0.0);
   }
 }
 
