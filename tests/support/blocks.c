@@ -27,6 +27,15 @@ PetscErrorCode BlocksCreate(PetscInt nodes, PetscInt elements, PetscInt n, Petsc
   PetscFunctionReturn(0);
 }
 
+PetscReal BlocksPlaneStrainModulus(const LamWall *wall)
+{
+  const PetscReal shear = wall->C1 + wall->C2, bulk = wall->bulk_modulus;
+  const PetscReal E = 9.0 * bulk * shear / (3.0 * bulk + shear);
+  const PetscReal nu = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
+
+  return E / (1.0 - nu * nu);
+}
+
 PetscErrorCode BlocksDestroy(Blocks *b)
 {
   PetscFunctionBeginUser;

@@ -57,6 +57,8 @@ PetscErrorCode BlocksDestroy(Blocks *b);
 PetscErrorCode BlocksAddGrid(Blocks *b, PetscInt nx, PetscInt ny,
                              void (*place)(void *ctx, PetscInt i, PetscInt j, PetscReal X[2]), void *ctx,
                              PetscInt *first);
+/* E' = E/(1 - nu^2) at small strain of a wall without fibres. */
+PetscReal BlocksPlaneStrainModulus(const LamWall *wall);
 /* Current positions of the chains. */
 LamMortarChains BlocksChains(Blocks *b);
 void BlocksGather(const Blocks *b, PetscInt e, PetscReal x[LAM_ELEMENT_NODES][2]);

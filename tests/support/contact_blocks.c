@@ -211,15 +211,6 @@ static double HertzForce(const Blocks *b)
   return force;
 }
 
-static double PlaneStrainModulus(const LamWall *wall)
-{
-  const double shear = wall->C1 + wall->C2, bulk = wall->bulk_modulus;
-  const double E = 9.0 * bulk * shear / (3.0 * bulk + shear);
-  const double nu = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
-
-  return E / (1.0 - nu * nu);
-}
-
 PetscErrorCode ComputeHertz(int even, double curvature, Hertz *hertz)
 {
   const double R = 1.0 / (1.0 + curvature);
@@ -230,7 +221,7 @@ PetscErrorCode ComputeHertz(int even, double curvature, Hertz *hertz)
   PetscFunctionBeginUser;
   PetscCall(HertzCreate(even, curvature, &grid, &b));
   PetscCall(BlocksSolve(&b, 1e-10, &hertz->iterations));
-  modulus = PlaneStrainModulus(&b.wall);
+  modulus = BlocksPlaneStrainModulus(&b.wall);
   hertz->nodes = b.node_count;
   hertz->force = HertzForce(&b);
   hertz->peak_theory = PetscSqrtReal(hertz->force * modulus / (PETSC_PI * R));
