@@ -1,9 +1,9 @@
 #include "torn_blocks.h"
 
-#define TORN_ITERATIONS 200
+#define TORN_ITERATIONS 600
 #define TORN_HALVINGS 12
 #define TORN_TOLERANCE 1e-9 /* of residuals, in the largest force of loads or lamella */
-#define TORN_SPRING 0.1     /* the weakest, in strength over range; then four times as strong and so on */
+#define TORN_SPRING 0.02    /* the weakest, in strength over range; then doubled */
 #define TORN_PATIENCE 25    /* iterations; just beyond a limit point descent is slow, and the target goes on by ... */
 #define TORN_FURTHER 0.1    /* ... this share of the step */
 #define TORN_EVEN 1e-12     /* energies that differ by less, relatively, are rounding */
@@ -353,7 +353,7 @@ static void TornKeep(Torn *torn, TornStep *step)
       LamEdgePlaceEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, torn->rule.place[q], &torn->bond[p],
                            &jump, &at);
       step->spent += weight * LamBondSpent(&torn->bond[p], &at);
-      step->stored += weight * (at.phi - LamBondSpent(&torn->bond[p], &at));
+      step->stored += weight * (at.phi + 0.5 * torn->bond[p].pressing * jump.r - LamBondSpent(&torn->bond[p], &at));
       torn->history[p] = LamBondKeep(&torn->bond[p], &jump, &at);
     }
   }
