@@ -260,6 +260,23 @@ TEST(ForcesAndTangentTurnWithTheBody)
   }
 }
 
+/* The frame is that of the middle between both walls. */
+TEST(SlaveAndMasterMayBeExchanged)
+{
+  FOR_EDGES(edge)
+  {
+    Edge exchanged = *edge;
+
+    for (int k = 0; k < LAM_EDGE_NODES; k++)
+      for (int d = 0; d < 2; d++) {
+        exchanged.X[k][d] = edge->X[LAM_EDGE_NODES - 1 - k][d];
+        exchanged.u[k][d] = edge->u[LAM_EDGE_NODES - 1 - k][d];
+      }
+    for (int q = 0; q < LAM_EDGE_POINTS; q++) exchanged.bond[q] = edge->bond[LAM_EDGE_POINTS - 1 - q];
+    assert_near(SumOf(&exchanged).energy, SumOf(edge).energy, 1e-15);
+  }
+}
+
 TEST(ForcesAreInEquilibrium)
 {
   FOR_EDGES(edge)
