@@ -5,7 +5,7 @@
 #define TORN_TOLERANCE 1e-9 /* of residuals, in the largest force of loads or lamella */
 #define TORN_SPRING 0.02    /* the weakest, in strength over range; then doubled */
 #define TORN_PATIENCE 25    /* iterations; just beyond a limit point descent is slow, and the target goes on by ... */
-#define TORN_FURTHER 0.1    /* ... this share of the step */
+#define TORN_FURTHER 0.1    /* ... this share of the step, then twice it and so on */
 #define TORN_EVEN 1e-12     /* energies that differ by less, relatively, are rounding */
 
 void TornGauss(PetscInt count, TornRule *rule)
@@ -315,7 +315,7 @@ static PetscErrorCode TornSolve(Torn *torn, PetscReal moved, PetscReal rhs[], Pe
     PetscBool springs = PETSC_FALSE;
 
     if (*iterations % TORN_PATIENCE == TORN_PATIENCE - 1) {
-      torn->target += TORN_FURTHER * moved;
+      torn->target += TORN_FURTHER * (*iterations / TORN_PATIENCE + 1) * moved;
       met = PETSC_FALSE;
     }
     PetscCall(TornAssemble(torn, rhs, &error));
