@@ -108,7 +108,7 @@ static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal
 }
 
 void LamEdgeAdd(const PetscReal X[][2], const PetscReal u[][2], PetscReal at, PetscReal w, const LamBond *bond,
-                LamCohesiveSum *sum)
+                PetscBool secant, LamCohesiveSum *sum)
 {
   PetscReal weight[LAM_EDGE_NODES][2];
   LamCohesiveStep step;

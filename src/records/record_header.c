@@ -121,6 +121,7 @@ static PetscErrorCode WriteCounter(const char path[], hid_t dataset)
 static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file, const LamScales *scales)
 {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED, chunk = LAM_RECORDS_PER_CHUNK;
+  const PetscInt64 padding = 0;
   hid_t type, space, list, dataset;
   uint32_t sum;
 
@@ -132,8 +133,9 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file, const Lam
   LamCallHDF5(path, PETSC_ERR_FILE_WRITE,
               dataset = H5Dcreate2(file, "/records", type, space, H5P_DEFAULT, list, H5P_DEFAULT));
   PetscCall(LamRecordTypeSum(type, &sum));
-  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum)); /* before the counter, which then lies in one sector */
-  PetscCall(WriteCounter(path, dataset));
+  PetscCall(LamSumWrite(path, dataset, LAM_TYPE_SUM, sum));
+  PetscCall(LamAttributeWriteNumber(path, dataset, "padding", H5T_STD_I64LE, H5T_NATIVE_INT64, &padding));
+  PetscCall(WriteCounter(path, dataset)); /* behind as much as puts it into one sector */
   PetscCall(LamRecordUnitsWrite(path, dataset, scales));
   PetscCall(LamCloseHDF5(path, dataset, list, space, type));
   PetscFunctionReturn(0);

@@ -8,8 +8,8 @@ from pathlib import Path
 
 source, failures, equations = Path(sys.argv[1]), [], 0
 known = set("""Big Delta Gamma Phi Pi Psi Sigma alpha ast bar begin beta cases cdot chi cos cot cr delta det dots end epsilon eta exp frac
-gamma ge gg in infty int kappa lambda lbrace lceil le left leftarrow lfloor ll ln lt mathcal mathit mathop mathrm max min mu nabla otimes
-partial phi pi pm psi qquad quad rbrace rceil rfloor right sigma sim sin sqrt sum tau text theta times to varepsilon varphi vartheta
+gamma ge gg in infty int kappa lambda langle lbrace lceil le left leftarrow lfloor ll ln lt mathcal mathit mathop mathrm max min mu nabla omega otimes
+partial phi pi pm propto psi qquad quad rangle rbrace rceil rfloor right sigma sim sin sqrt sum tau text theta times to varepsilon varphi vartheta
 xi""".split())
 
 def check(where, math, inline):

@@ -92,7 +92,7 @@ static void TornAddPressed(const Torn *torn, PetscInt e, LamCohesiveSum *sum)
     }
   for (PetscInt q = 0; q < torn->rule.count; ++q)
     LamEdgeAdd((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, torn->rule.place[q],
-               torn->length[e] * torn->rule.weight[q], &springs, &exchanged);
+               torn->length[e] * torn->rule.weight[q], &springs, PETSC_FALSE, &exchanged);
   sum->energy += exchanged.energy;
   for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
     sum->f[i] += exchanged.f[(i + 6) % LAM_EDGE_DOFS];
@@ -110,7 +110,7 @@ static void TornEdge(const Torn *torn, PetscInt e, LamCohesiveSum *sum)
   TornGather(torn, e, X, u);
   for (PetscInt q = 0; q < torn->rule.count; ++q)
     LamEdgeAdd((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, torn->rule.place[q],
-               torn->length[e] * torn->rule.weight[q], &torn->bond[e * torn->rule.count + q], sum);
+               torn->length[e] * torn->rule.weight[q], &torn->bond[e * torn->rule.count + q], PETSC_FALSE, sum);
 }
 
 /* Of the walls, and with the independent stresses at the present positions: Newton's tangent is then that of the

@@ -75,7 +75,7 @@ static LamCohesiveSum SumOf(const Edge *edge)
 {
   LamCohesiveSum sum;
 
-  LamEdgeEvaluate(edge->X, edge->u, edge->bond, edge->length, &sum);
+  LamEdgeEvaluate(edge->X, edge->u, edge->bond, edge->length, PETSC_FALSE, &sum);
   return sum;
 }
 
