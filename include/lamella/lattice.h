@@ -27,6 +27,8 @@ LAM_EXPORT void LamLatticeIndex(const LamMicrostructure *micro, PetscInt cell, P
 */
 LAM_EXPORT PetscInt LamLatticeNeighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscInt wraps[2],
                                         PetscBool *held);
+/* Whether a notch of a patch passes between two neighbours. */
+LAM_EXPORT PetscBool LamLatticeIsCut(const LamMicrostructure *micro, PetscInt cell, PetscInt other);
 /* Distance of two lattice points, given the difference of their coordinates, in neighbour distances (two apothems). */
 LAM_EXPORT PetscReal LamLatticeDistance(PetscInt d0, PetscInt d1);
 

@@ -68,6 +68,7 @@ typedef struct {
   PetscBool is_patch;       /* a block of cells between grips; otherwise periodic */
   LamPatchSides sides;      /* of a patch */
   PetscInt cells[2];        /* per period along lattice vectors 0 and 1; of a patch: columns and rows */
+  PetscInt notch_row, notch_columns; /* of a patch with a lamella: none holds below the first cells of this row */
   LamWall wall;
   LamCell *cell; /* [cells[0] cells[1]], cell = i cells[1] + j; NULL: all cells are equal. Owned by the original; copies
                     of the struct borrow it */

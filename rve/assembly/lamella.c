@@ -14,6 +14,7 @@ static void FaceFactors(const LamMicrostructure *micro, const LamContactFace *fa
 
   *strength = lamella->face_strength[face->face];
   *energy = lamella->face_energy[face->face];
+  if (LamLatticeIsCut(micro, face->cell, face->other)) *strength = *energy = 0.0;
   if (!micro->cell) return;
   a = &micro->cell[face->cell];
   b = &micro->cell[face->other];
@@ -43,6 +44,10 @@ PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mes
   LamLayer *layer;
 
   PetscFunctionBeginUser;
+  PetscCheck(micro->lamella.stiffness > 0.0 && micro->lamella.strength > 0.0 && micro->lamella.energy > 0.0,
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "stiffness, strength and energy of the lamella must be positive, got %g, %g and %g",
+             (double)micro->lamella.stiffness, (double)micro->lamella.strength, (double)micro->lamella.energy);
   PetscCall(PetscNew(&layer));
   layer->count = contact->face_count * mesh->along * LAM_EDGE_POINTS;
   PetscCall(

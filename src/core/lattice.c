@@ -50,6 +50,14 @@ void LamLatticeIndex(const LamMicrostructure *micro, PetscInt cell, PetscInt ind
   for (PetscInt d = 0; d < 2; ++d) index[d] = along * lattice[m][d] + up * lattice[(m + 1) % LAM_FACES][d];
 }
 
+PetscBool LamLatticeIsCut(const LamMicrostructure *micro, PetscInt cell, PetscInt other)
+{
+  const PetscInt rows = micro->cells[1], upper = cell % rows > other % rows ? cell : other;
+
+  return (PetscBool)(upper / rows < micro->notch_columns && upper % rows == micro->notch_row &&
+                     PetscMin(cell % rows, other % rows) == micro->notch_row - 1);
+}
+
 PetscInt LamLatticeNeighbour(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscInt wraps[2],
                              PetscBool *held)
 {

@@ -98,7 +98,10 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
 {
   fprintf(out, "{\"wall_thickness\": %.12g, \"orientation\": %.12g, \"cells\": [%d, %d], ",
           Clean(micro->wall_thickness), Clean(micro->orientation), (int)micro->cells[0], (int)micro->cells[1]);
-  if (micro->is_patch) fprintf(out, "\"patch\": {\"sides\": \"%s\"}, ", LamPatchSidesNames[micro->sides]);
+  if (micro->is_patch) fprintf(out, "\"patch\": {\"sides\": \"%s\"", LamPatchSidesNames[micro->sides]);
+  if (micro->is_patch && micro->notch_columns)
+    fprintf(out, ", \"notch\": [%d, %d]", (int)micro->notch_row, (int)micro->notch_columns);
+  if (micro->is_patch) fprintf(out, "}, ");
   fprintf(out, "\"mesh\": {\"along\": %d, \"through\": %d", (int)micro->along, (int)micro->through);
   if (micro->grading != 0) fprintf(out, ", \"grading\": %.12g", Clean(micro->grading));
   fprintf(out, "}, ");
@@ -240,9 +243,11 @@ static PetscBool ParseCells(json_t *array, LamMicrostructure *m)
 static PetscBool ParsePatch(json_t *object, LamMicrostructure *m)
 {
   const char *sides;
-  int found;
+  int found, row = 0, columns = 0;
 
-  if (json_unpack(object, "{s:s}", "sides", &sides)) return PETSC_FALSE;
+  if (json_unpack(object, "{s:s, s?[i, i]}", "sides", &sides, "notch", &row, &columns)) return PETSC_FALSE;
+  m->notch_row = row;
+  m->notch_columns = columns;
   found = Find(LAM_PATCH_SIDES_COUNT, LamPatchSidesNames, sides);
   m->is_patch = PETSC_TRUE;
   m->sides = (LamPatchSides)found;

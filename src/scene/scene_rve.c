@@ -29,6 +29,12 @@ static const LamKey cell_keys[] = {
      .default_value = "affine",
      .help = "Whether the lateral outer walls follow F, too (`affine`), or are left `free`. Free sides need law "
              "`bonded` or a cohesion: nothing else holds the outer cells between the grips."},
+    {MAP("rve.patch.notch"), .default_words = "none", .example = "{row: 3, columns: 2}",
+     .help = "A cut from the left side between two rows, where nothing holds; only with law `lamella`."},
+    {INTEGER("rve.patch.notch.row"), INTO(LamScene, micro.notch_row), REQUIRED, FROM(1), TO(LAM_MAX_CELLS),
+     .example = "3", .help = "Rows below it; less than `rows`."},
+    {INTEGER("rve.patch.notch.columns"), INTO(LamScene, micro.notch_columns), REQUIRED, FROM(1), TO(LAM_MAX_CELLS),
+     .example = "2", .help = "Cells above it; less than `columns`."},
 };
 LAM_KEY_TABLE(LamCellKeys, cell_keys);
 
@@ -94,6 +100,19 @@ static PetscErrorCode BuildTurgor(const LamNode *root, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CheckNotch(const LamNode *notch, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  if (!notch) PetscFunctionReturn(0);
+  LamSceneCheckName(micro->interface == LAM_INTERFACE_LAMELLA, notch,
+                    "cells that a lamella does not join cannot be cut apart; write rve.interface.law: lamella");
+  LamSceneCheck(micro->notch_row < micro->cells[1], LamNodeFind(notch, "row"),
+                "leaves no row above; the patch has %d rows", (int)micro->cells[1]);
+  LamSceneCheck(micro->notch_columns < micro->cells[0], LamNodeFind(notch, "columns"),
+                "cuts the patch in two; it has %d columns", (int)micro->cells[0]);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
 {
   const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
@@ -117,6 +136,7 @@ PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
                     "given together with patch in line %d; a block of cells is periodic or between grips",
                     patch->name_line);
   micro->is_patch = (PetscBool)(patch != NULL);
+  PetscCall(CheckNotch(LamNodeFind(rve, "patch.notch"), micro));
   PetscCall(BuildTurgor(root, scene));
   PetscCall(LamSceneBuildCells(root, scene));
   PetscCall(LamSceneBuildInterface(root, scene));

@@ -8,7 +8,6 @@ LamMicrostructure LamellaTissue(double range)
   micro.along = 4;
   micro.through = 1;
   micro.interface = LAM_INTERFACE_LAMELLA;
-  micro.lamella = LAM_LAMELLA_UNIFORM;
   micro.lamella.stiffness = 1000.0;
   micro.lamella.strength = micro.lamella.shear_strength = 0.2;
   micro.lamella.energy = micro.lamella.shear_energy = 0.5 * 0.2 * range;

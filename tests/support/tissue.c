@@ -8,6 +8,10 @@ LamMicrostructure DefaultTissue(void)
   micro.wall.C2 = 0.01 / TISSUE_STRESS;
   micro.wall.C4 = 1.0 / TISSUE_STRESS;
   micro.wall.bulk_modulus = 1000.0;
+  micro.lamella = LAM_LAMELLA_UNIFORM; /* of law `lamella`; a program sets its own */
+  micro.lamella.stiffness = 5000.0;
+  micro.lamella.strength = micro.lamella.shear_strength = 0.2;
+  micro.lamella.energy = micro.lamella.shear_energy = 0.05;
   return micro;
 }
 

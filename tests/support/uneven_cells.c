@@ -2,7 +2,12 @@
 
 LamCell PlainCell(const LamMicrostructure *micro)
 {
-  return (LamCell){.wall_thickness = micro->wall_thickness, .wall = micro->wall, .turgor = 1.0, .cohesion = 1.0};
+  return (LamCell){.wall_thickness = micro->wall_thickness,
+                   .wall = micro->wall,
+                   .turgor = 1.0,
+                   .cohesion = 1.0,
+                   .lamella_strength = 1.0,
+                   .lamella_energy = 1.0};
 }
 
 /* A thick and a thin one, one without fibres, one with stiffer fibres in tension only; all with other factors. */

@@ -87,3 +87,26 @@ TEST(distances_are_those_of_the_plane)
   assert_near(LamLatticeDistance(1, 1), sqrt(3.0), 1e-15);
   assert_near(LamLatticeDistance(3, -1), sqrt(7.0), 1e-15);
 }
+
+/* Below two cells of row 1, between three columns and rows standing on a corner: each of them faces two below. */
+TEST(a_notch_cuts_the_faces_below_its_cells)
+{
+  LamMicrostructure micro = {.is_patch = PETSC_TRUE, .cells = {3, 3}, .notch_row = 1, .notch_columns = 2};
+  PetscInt cut = 0;
+
+  for (PetscInt k = 0; k < LAM_FACES * 9; k++) {
+    const PetscInt cell = k / LAM_FACES, other = LamLatticeNeighbour(&micro, cell, k % LAM_FACES, NULL, NULL);
+
+    if (other < 0 || !LamLatticeIsCut(&micro, cell, other)) continue;
+    assert_true(LamLatticeIsCut(&micro, other, cell));
+    assert_true(cell % 3 != other % 3 && cell % 3 < 2 && other % 3 < 2);
+    cut++;
+  }
+  assert_int_equal(cut, 2 * 4); /* from both sides */
+  micro.notch_columns = 0;
+  for (PetscInt k = 0; k < LAM_FACES * 9; k++) {
+    const PetscInt other = LamLatticeNeighbour(&micro, k / LAM_FACES, k % LAM_FACES, NULL, NULL);
+
+    assert_false(other >= 0 && LamLatticeIsCut(&micro, k / LAM_FACES, other));
+  }
+}
