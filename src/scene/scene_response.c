@@ -19,7 +19,7 @@ static const LamKey response_keys[] = {
      .example = "0.001", .help = "Relative error of P, by its estimate, that a response from a database may have."},
     {TEXT("macro.response.warm_start_memory"), .default_words = "2 GB", .example = "500 MB",
      .help = "Memory of a rank for the states from which direct solves start; material points that find no room start "
-             "from the reference."},
+             "from the reference. With law `lamella`, whose states are its history, all find room."},
 };
 LAM_KEY_TABLE(LamResponseKeys, response_keys);
 

@@ -171,7 +171,8 @@ PetscErrorCode LamFE2ChangeTissueWalls(void *ctx, const PetscReal factor[LAM_WAL
   PetscFunctionReturn(0);
 }
 
-/* *kept: number of points for which two states fit in this tissue's share of warm_start_memory. */
+/* *kept: number of points for which two states fit in this tissue's share of warm_start_memory; with a history, whose
+   responses are of their states, all. */
 static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue, PetscInt *kept)
 {
   const PetscReal memory = run->scene->response.warm_start_memory;
@@ -180,6 +181,8 @@ static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue
   size_t bytes;
 
   PetscFunctionBeginUser;
+  *kept = tissue->points;
+  if (tissue->scene.micro.interface == LAM_INTERFACE_LAMELLA) PetscFunctionReturn(0);
   for (PetscInt t = 0; t < run->tissues.count; t++) share += (PetscReal)run->tissues.tissues[t].points;
   PetscCall(LamRVEStateCreate(tissue->rve, &state));
   PetscCall(LamRVEStateSize(state, &bytes));

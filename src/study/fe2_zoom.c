@@ -1,8 +1,8 @@
 /*
   Zoom into the microstructure: the RVE at chosen material points of the last converged state, written to the results.
 
-  The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response and
-  one tissue it starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
+  The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response it
+  starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
   the file is the LamStressError between the stress used by the run and the one found: the error of an interpolated or
   blended response, or a sign of another branch.
 
@@ -97,19 +97,20 @@ static PetscErrorCode Choose(const LamFE2Run *run, const LamMacroFields *fields,
 
 /* ---- tissue and state of a point ---- */
 
-/* Broadcasts tissue and angle of the point. *bytes: its packed state, with direct response and one tissue; else NULL.
-   The caller frees it. Collective. */
+/* Broadcasts tissue and angle of the point. *bytes: its packed state, with direct response; else NULL. The caller frees
+   it. Collective. */
 static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
 {
   const LamFE2Tissues *tissues = &run->tissues;
-  const LamResponder direct = tissues->tissues[0].direct;
   PetscMPIInt rank, owner;
-  PetscInt point;
+  PetscInt point, number; /* number: of the point in its tissue */
+  LamResponder direct;
   size_t length = 0;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(run->comm, &rank));
   PetscCall(LamMacroFindPoint(run->macro, zoom->point[0], zoom->point[1], &point));
+  number = point;
   owner = point >= 0 ? rank : -1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MAX, run->comm));
   if (rank == owner && tissues->point) {
@@ -118,14 +119,16 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
     for (PetscInt k = 1; k < of->count; k++) largest = of->term[k].weight > of->term[largest].weight ? k : largest;
     zoom->tissue = of->term[largest].knot;
     zoom->angle = of->angle;
+    number = LamHeterogeneousPointCount(point, tissues->point, zoom->tissue);
   }
   PetscCallMPI(MPI_Bcast(&zoom->tissue, 1, MPIU_INT, owner, run->comm));
   PetscCallMPI(MPI_Bcast(&zoom->angle, 1, MPIU_REAL, owner, run->comm));
   *bytes = NULL;
-  if (!tissues->plain || run->response != LAM_FE2_DIRECT) PetscFunctionReturn(0);
+  if (run->response != LAM_FE2_DIRECT) PetscFunctionReturn(0);
+  direct = tissues->tissues[zoom->tissue].direct;
   PetscCall(LamResponderGetStateSize(direct, &length));
   PetscCall(PetscMalloc1(length, bytes));
-  if (rank == owner) PetscCall(LamResponderSave(direct, point, *bytes));
+  if (rank == owner) PetscCall(LamResponderSave(direct, number, *bytes));
   PetscCallMPI(MPI_Bcast(*bytes, (PetscMPIInt)length, MPI_BYTE, owner, run->comm));
   PetscFunctionReturn(0);
 }
