@@ -195,6 +195,8 @@ PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive)
   PetscCheck(macro->responder, macro->comm, PETSC_ERR_ORDER, "call LamMacroSetResponder() first");
   PetscCall(LamArchiveShared(archive, "progress", sizeof(macro->progress), &macro->progress));
   PetscCall(LamArchiveShared(archive, "work", sizeof(macro->step.work), &macro->step.work));
+  PetscCall(
+      LamArchiveShared(archive, "mesh dependent", sizeof(macro->step.mesh_dependent), &macro->step.mesh_dependent));
   PetscCall(LamMacroArchiveVec(macro, archive, "origin", macro->origin));
   PetscCall(LamArchiveShared(archive, "cost", sizeof(macro->cost), &macro->cost));
   if (LamArchiveIsReading(archive)) { /* conditions are measured from the stored displacement */

@@ -13,6 +13,12 @@ PetscBool LamPointFieldIsStress(LamPointField field)
                      field == LAM_POINT_SHEAR || field == LAM_POINT_ELLIPTICITY);
 }
 
+PetscBool LamPointFieldIsEnergy(LamPointField field)
+{
+  return (PetscBool)(field == LAM_POINT_STORED || field == LAM_POINT_DISSIPATED || field == LAM_POINT_RELEASED ||
+                     field == LAM_POINT_WORK);
+}
+
 PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b)
 {
   if (isnan(a) || isnan(b)) return NAN;
@@ -40,6 +46,16 @@ static PetscReal FaceUnloading(const LamResponse *r)
   return PetscIsInfReal(least) ? NAN : 1 - least / pressing;
 }
 
+/* The largest of the known ones: a patch may lack a face family. */
+static PetscReal MostBroken(const LamResponse *r)
+{
+  PetscReal most = NAN;
+
+  for (int k = 0; k < 3; k++)
+    if (!(r->broken_by_face[k] <= most) && !isnan(r->broken_by_face[k])) most = r->broken_by_face[k];
+  return most;
+}
+
 void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_FIELD_COUNT])
 {
   const PetscBool interpolated = (PetscBool)(response->source == LAM_SOURCE_DATABASE);
@@ -58,6 +74,12 @@ void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_F
   field[LAM_POINT_ERROR] = interpolated ? response->error_estimate : 0;
   field[LAM_POINT_INTERPOLATED] = interpolated;
   field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
+  field[LAM_POINT_BROKEN] = response->broken_fraction;
+  field[LAM_POINT_BROKEN_FACE] = MostBroken(response);
+  field[LAM_POINT_STORED] = response->stored;
+  field[LAM_POINT_DISSIPATED] = response->dissipated;
+  field[LAM_POINT_RELEASED] = response->released;
+  field[LAM_POINT_WORK] = response->work;
 }
 
 /* ---- the arrays of LamMacroFields ---- */

@@ -328,6 +328,35 @@ static PetscErrorCode MeanIndicators(LamMacro macro, LamMacroStep *step)
   PetscFunctionReturn(0);
 }
 
+/* Energies and damage of the points with a lamella that breaks. */
+static PetscErrorCode SumLamella(LamMacro macro, LamMacroStep *step)
+{
+  enum { VOLUME, BROKEN, STORED, DISSIPATED, RELEASED, WORK, SUMS };
+  PetscReal sum[SUMS] = {0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < macro->point_count; p++) {
+    const PetscReal *field = macro->accepted[p].field, weight = macro->weight[p];
+
+    if (isnan(field[LAM_POINT_BROKEN])) continue;
+    sum[VOLUME] += weight;
+    sum[BROKEN] += weight * field[LAM_POINT_BROKEN];
+    sum[STORED] += weight * field[LAM_POINT_STORED];
+    sum[DISSIPATED] += weight * field[LAM_POINT_DISSIPATED];
+    sum[RELEASED] += weight * field[LAM_POINT_RELEASED];
+    sum[WORK] += weight * field[LAM_POINT_WORK];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, SUMS, MPIU_REAL, MPIU_SUM, macro->comm));
+  for (int k = 0; k < SUMS && sum[VOLUME] == 0; k++) sum[k] = NAN;
+  step->broken_fraction = sum[BROKEN] / sum[VOLUME];
+  step->stored = sum[STORED];
+  step->dissipated = sum[DISSIPATED];
+  step->released = sum[RELEASED];
+  step->tissue_work = sum[WORK];
+  if (sum[VOLUME] > 0 && step->localised_points) step->mesh_dependent = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 /* Counters of the step on all ranks, and mean times. */
 static PetscErrorCode SumCounters(LamMacro macro, LamMacroStep *step)
 {
@@ -364,6 +393,7 @@ PetscErrorCode LamMacroFinishStep(LamMacro macro, PetscInt number, PetscReal loa
   PetscCall(LamMacroReactions(macro, step));
   PetscCall(MeanIndicators(macro, step));
   PetscCall(LamMacroFindLocalisation(macro, step));
+  PetscCall(SumLamella(macro, step));
   PetscCall(SumCounters(macro, step));
   PetscCall(LamMacroCertify(macro, step));
   step->seconds = LamClock() - start;

@@ -60,7 +60,13 @@ typedef struct {
   PetscReal localisation_normal[2]; /* reference normal of the critical band there, */
   PetscReal localisation_place[2];  /* and the reference position of the point, macro lengths */
   PetscInt localised_points;        /* number of points that have lost ellipticity */
-  PetscInt newton_iterations;       /* total of the step, cutbacks included */
+  /* of the points with law `lamella`; without any NaN and PETSC_FALSE */
+  PetscReal stored, dissipated, released; /* sums over the points since the undeformed tissue, stress * length^2: */
+  PetscReal tissue_work;                  /* work of stress, turgor and suction, stored + dissipated + released */
+  PetscReal broken_fraction;              /* mean of the share of the lamella's fracture energy that is spent */
+  PetscBool mesh_dependent;               /* ellipticity has been lost in this or an earlier step: damage stays where
+                                             that has put it, as narrow as elements, and so depends on the mesh */
+  PetscInt newton_iterations;             /* total of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
   PetscInt64 interpolated;                    /* responses from a database, likewise; some needed solves of nodes */
@@ -74,7 +80,7 @@ typedef struct {
 
 typedef enum { LAM_MACRO_DONE, LAM_MACRO_STOPPED, LAM_MACRO_NOT_CONVERGED } LamMacroReason;
 
-enum { LAM_MESSAGE_LENGTH = 512 };
+enum { LAM_MESSAGE_LENGTH = 1024 };
 
 /* Called on all ranks after each converged step, and after an incomplete last one; sets *stop to end the run after
    it. */
@@ -205,10 +211,18 @@ LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, Pets
                                               over an element's points */                                              \
   X(LAM_POINT_ERROR, "error_estimate")     /* of an interpolated response; 0: solved */                                \
   X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: from a database; 0: solved */                                        \
-  X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators are not trusted; else 0 */
+  X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators are not trusted; else 0 */                                \
+  /* of law `lamella`, else NaN; LamResponse */                                                                        \
+  X(LAM_POINT_BROKEN, "broken_fraction")                                                                               \
+  X(LAM_POINT_BROKEN_FACE, "broken_face") /* the largest of broken_by_face */                                          \
+  X(LAM_POINT_STORED, "stored")           /* energies per reference volume */                                          \
+  X(LAM_POINT_DISSIPATED, "dissipated")                                                                                \
+  X(LAM_POINT_RELEASED, "released")                                                                                    \
+  X(LAM_POINT_WORK, "work")
 typedef enum { LAM_POINT_FIELDS(LAM_ENUM_ENTRY) LAM_POINT_FIELD_COUNT } LamPointField;
 LAM_EXPORT extern const char *const LamPointFieldNames[];
 LAM_EXPORT PetscBool LamPointFieldIsStress(LamPointField field); /* in C1 + C2; otherwise a number without unit */
+LAM_EXPORT PetscBool LamPointFieldIsEnergy(LamPointField field); /* per volume, in C1 + C2, too */
 /* The more critical of two values, when one stands for several points: the larger, or the smaller for quantities
    whose decrease is critical. NaN is propagated. */
 LAM_EXPORT PetscReal LamPointFieldWorse(LamPointField field, PetscReal a, PetscReal b);

@@ -67,6 +67,20 @@ static json_t *NumbersToJSON(const LamFE2Run *run, const LamMacroStep *step, Pet
       "other_seconds", LamJSONReal(PetscMax(0, step->seconds - step->query_seconds - step->solve_seconds)));
 }
 
+/* Of a lamella that breaks. */
+static void SetLamella(const LamFE2Run *run, const LamMacroStep *step, json_t *object)
+{
+  const PetscReal energy = run->scene->scales.stress * PetscSqr(run->scene->scales.macro_length);
+
+  if (isnan(step->broken_fraction)) return;
+  json_object_set_new(object, "broken_fraction", LamJSONReal(step->broken_fraction));
+  json_object_set_new(object, "stored", LamJSONReal(step->stored * energy));
+  json_object_set_new(object, "dissipated", LamJSONReal(step->dissipated * energy));
+  json_object_set_new(object, "released", LamJSONReal(step->released * energy));
+  json_object_set_new(object, "tissue_work", LamJSONReal(step->tissue_work * energy));
+  json_object_set_new(object, "mesh_dependent", json_boolean(step->mesh_dependent));
+}
+
 json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
   json_t *object = json_object(), *numbers = NumbersToJSON(run, step, peak_memory);
@@ -78,6 +92,7 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
     SetCertificate(run, step, &step->peak, peak);
     json_object_set_new(object, "peak", peak);
   }
+  SetLamella(run, step, numbers);
   json_object_update(object, numbers); /* last: of keys that are there twice, scripts that read lines take these */
   json_decref(numbers);
   return object;
@@ -250,6 +265,22 @@ static void PrintMode(const json_t *summary, const char mode[], const char unjud
     printf("not reached\n");
 }
 
+/* What a lamella that breaks has taken up, and from where on results depend on the mesh. */
+static void PrintLamella(const json_t *summary)
+{
+  const json_t *from = json_object_get(summary, "mesh_dependent");
+
+  if (!json_object_get(summary, "broken_fraction")) return;
+  printf("  %-18s %.4g of its fracture energy; stored %.4g, dissipated %.4g, released in jumps %.4g N mm/mm\n",
+         "lamella", Number(summary, "broken_fraction"), Number(summary, "stored"), Number(summary, "dissipated"),
+         Number(summary, "released"));
+  if (json_is_object(from))
+    printf(
+        "  %-18s from step %lld (load factor %.4g) on, where the tissue has lost ellipticity: what follows is not of "
+        "the tissue alone, but of the mesh of the body, too\n",
+        "mesh-dependent", (long long)json_integer_value(json_object_get(from, "step")), Number(from, "load_factor"));
+}
+
 void LamSummaryPrint(const json_t *summary)
 {
   const json_t *loaded = json_object_get(summary, "loaded");
@@ -270,6 +301,7 @@ void LamSummaryPrint(const json_t *summary)
     printf("  %-18s %.4g N/mm at u %.4g mm, load factor %.4g\n", "largest force", Number(firmness, "reaction"),
            Number(firmness, "displacement"), Number(firmness, "load_factor"));
   printf("  %-18s %.4g N mm/mm\n", "work", Number(summary, "work"));
+  PrintLamella(summary);
 }
 
 PetscErrorCode LamFE2ReportTest(const LamFE2Run *run, const LamConsole *console)

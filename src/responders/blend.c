@@ -82,6 +82,22 @@ static PetscReal *Potential(const LamResponse *r)
   return (PetscReal *)((char *)r + offsetof(LamResponse, energy));
 }
 
+static PetscBool IsIndicator(size_t offset)
+{
+  return (
+      PetscBool)((offset >= offsetof(LamResponse, turgor_mean) && offset <= offsetof(LamResponse, mean_wall_tension)) ||
+                 offset == offsetof(LamResponse, broken_fraction) || offset == offsetof(LamResponse, broken_by_face));
+}
+
+/* Of law `lamella`: their sums remain those of the energy. */
+static void AddEnergies(PetscReal weight, const LamResponse *term, LamResponse *r)
+{
+  r->stored += weight * term->stored;
+  r->dissipated += weight * term->dissipated;
+  r->work += weight * term->work;
+  r->released += weight * term->released;
+}
+
 /* Interpolates pressures and indicators between the two terms with shares; counts are set where both agree. */
 static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal t, LamResponse *r)
 {
@@ -90,9 +106,7 @@ static void MixIndicators(const LamResponse *a, const LamResponse *b, PetscReal 
     const PetscReal *to = (const PetscReal *)((const char *)b + m->offset);
     PetscReal *mixed = (PetscReal *)((char *)r + m->offset);
 
-    if (m->type != LAM_MEMBER_REAL || m->offset < offsetof(LamResponse, turgor_mean) ||
-        m->offset > offsetof(LamResponse, mean_wall_tension))
-      continue;
+    if (m->type != LAM_MEMBER_REAL || !IsIndicator(m->offset)) continue;
     for (PetscInt i = 0; i < m->count; i++) mixed[i] = (1 - t) * from[i] + t * to[i];
   }
   if (a->floating_cells == b->floating_cells) r->floating_cells = a->floating_cells;
@@ -133,11 +147,13 @@ void LamBlend(LamStressScale scale, PetscInt n, const LamBlendTerm terms[], cons
   PetscReal estimate = 0, P[9] = {0};
 
   for (int k = 0; k < POTENTIAL; k++) Potential(r)[k] = 0;
+  r->stored = r->dissipated = r->work = r->released = 0;
   r->status = LAM_CONVERGED;
   r->source = LAM_SOURCE_DATABASE;
   r->stable = PETSC_TRUE;
   for (PetscInt i = 0; i < n; i++) {
     for (int k = 0; k < POTENTIAL; k++) Potential(r)[k] += terms[i].weight * Potential(&at[i])[k];
+    AddEnergies(terms[i].weight, &at[i], r);
     AddEffort(&at[i], r);
     estimate += fabs(terms[i].weight) * at[i].error_estimate;
     for (int k = 0; k < 9; k++) P[k] += terms[i].coarse * at[i].P[k];

@@ -55,7 +55,7 @@ static void AddCertificate(LamCurve *curve, const LamMacroCertificate *certifica
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales)
 {
-  const PetscReal MPa = scales->stress * 1e-6;
+  const PetscReal MPa = scales->stress * 1e-6, energy = scales->stress * PetscSqr(scales->macro_length);
   LamCurveRow row = {LAM_CURVE_COLUMNS(VALUE_ENTRY)};
 
   PetscFunctionBeginUser;
@@ -85,7 +85,11 @@ PetscErrorCode LamCurveDestroy(LamCurve *curve)
 
 PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column)
 {
-  return (PetscBool)(column != LAM_CURVE_TIME || (curve->count && isfinite(curve->rows[0].value[LAM_CURVE_TIME])));
+  const LamCurveColumn known = column == LAM_CURVE_TIME                                           ? column
+                               : column >= LAM_CURVE_STORED && column <= LAM_CURVE_MESH_DEPENDENT ? LAM_CURVE_BROKEN
+                                                                                                  : LAM_CURVE_STEP;
+
+  return (PetscBool)(known == LAM_CURVE_STEP || (curve->count && isfinite(curve->rows[0].value[known])));
 }
 
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)

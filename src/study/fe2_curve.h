@@ -13,7 +13,7 @@
   X(LAM_CURVE_STEP, "step", "1", step->step)                                                                           \
   X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1", step->load_factor)                                                      \
   X(LAM_CURVE_TIME, "time", "s", step->time) /* only for processes */                                                  \
-  X(LAM_CURVE_WORK, "work", "N mm/mm", (step->work) * scales->stress * PetscSqr(scales->macro_length))                 \
+  X(LAM_CURVE_WORK, "work", "N mm/mm", (step->work) * energy)                                                          \
   X(LAM_CURVE_TURGOR, "turgor_mean", "MPa", (step->turgor_mean) * MPa)                                                 \
   X(LAM_CURVE_OPENING, "opening_fraction", "1", Mean(fields, LAM_POINT_OPENING)) /* mean over the body */              \
   X(LAM_CURVE_DEBONDED, "debonded_fraction", "1", step->debonded_fraction)       /* likewise */                        \
@@ -25,6 +25,13 @@
   X(LAM_CURVE_SHEAR, "lamella_shear_max", "MPa", Largest(fields, LAM_POINT_SHEAR) * MPa)                               \
   X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa", (step->ellipticity) * MPa) /* smallest over all points */         \
   X(LAM_CURVE_LOCALISED, "localised_points", "1", step->localised_points) /* points that have lost ellipticity */      \
+  /* sums over the points with law `lamella`, and their mean; these six only with that law */                          \
+  X(LAM_CURVE_STORED, "stored", "N mm/mm", (step->stored) * energy)                                                    \
+  X(LAM_CURVE_DISSIPATED, "dissipated", "N mm/mm", (step->dissipated) * energy)                                        \
+  X(LAM_CURVE_RELEASED, "released", "N mm/mm", (step->released) * energy)                                              \
+  X(LAM_CURVE_TISSUE_WORK, "tissue_work", "N mm/mm", (step->tissue_work) * energy)                                     \
+  X(LAM_CURVE_BROKEN, "broken_fraction", "1", step->broken_fraction)                                                   \
+  X(LAM_CURVE_MESH_DEPENDENT, "mesh_dependent", "1", step->mesh_dependent) /* 1: from here on; else 0 */               \
   X(LAM_CURVE_SEPARATED, "separated_share", "1", NAN) /* volume fraction, set by the summary; NaN: not evaluated */    \
   X(LAM_CURVE_RUPTURED, "ruptured_share", "1", NAN)   /* likewise */                                                   \
   X(LAM_CURVE_ERROR, "error_estimate_max", "1", Largest(fields, LAM_POINT_ERROR))                                      \

@@ -68,8 +68,8 @@ static PetscReal StrengthOf(const LamStrength *strength, LamPointField field)
    element. */
 static PetscBool HasLargest(LamPointField field)
 {
-  return (PetscBool)(field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN && field != LAM_POINT_INTERPOLATED &&
-                     field != LAM_POINT_DOUBTFUL);
+  return (PetscBool)(!LamPointFieldIsEnergy(field) && field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN &&
+                     field != LAM_POINT_INTERPOLATED && field != LAM_POINT_DOUBTFUL);
 }
 
 static void AddField(LamFE2File file, const char name[], const char ending[], Field field)
@@ -95,7 +95,13 @@ static void AddScalars(LamFE2File file, LamPointField k, PetscBool ratio, PetscR
   if (HasLargest(k)) AddField(file, LamPointFieldNames[k], k == LAM_POINT_ELLIPTICITY ? "_min" : largest, field);
 }
 
-static void ChooseFields(LamFE2File file, const LamStrength *strength)
+/* Of no other law than `lamella`. */
+static PetscBool IsOfLamella(LamPointField field)
+{
+  return (PetscBool)(LamPointFieldIsEnergy(field) || field == LAM_POINT_BROKEN || field == LAM_POINT_BROKEN_FACE);
+}
+
+static void ChooseFields(LamFE2File file, const LamStrength *strength, PetscBool lamella)
 {
   const PetscReal MPa = file->scales.stress * 1e-6, mm = file->scales.macro_length * 1e3;
   const Field tensors[] = {{"u", 3, offsetof(LamMacroFields, u), 0, 2, LAM_POINT_FIELD_COUNT, mm, "mm"},
@@ -107,7 +113,11 @@ static void ChooseFields(LamFE2File file, const LamStrength *strength)
   for (LamPointField k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
     const PetscBool stress = LamPointFieldIsStress(k);
 
-    AddScalars(file, k, PETSC_FALSE, stress ? MPa : 1, stress ? "MPa" : k == LAM_POINT_GAP ? "apothem" : "1");
+    if (IsOfLamella(k) && !lamella) continue;
+    if (LamPointFieldIsEnergy(k))
+      AddScalars(file, k, PETSC_FALSE, MPa * 1e3, "kJ/m^3");
+    else
+      AddScalars(file, k, PETSC_FALSE, stress ? MPa : 1, stress ? "MPa" : k == LAM_POINT_GAP ? "apothem" : "1");
     if (isfinite(StrengthOf(strength, k))) AddScalars(file, k, PETSC_TRUE, 1, "1");
   }
 }
@@ -118,7 +128,7 @@ PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamSce
   PetscCall(PetscNew(file));
   PetscCall(PetscStrncpy((*file)->path, path, sizeof((*file)->path)));
   (*file)->scales = scene->scales;
-  ChooseFields(*file, &scene->strength);
+  ChooseFields(*file, &scene->strength, (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA));
   PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", mode, scene, &(*file)->writer);
   if (ierr) PetscCall(PetscFree(*file));
   PetscCall(ierr);

@@ -15,6 +15,10 @@ static LamSummaryMode ModeOf(LamSummaryCriterion criterion)
   return criterion == LAM_SUMMARY_WALL ? LAM_SUMMARY_RUPTURE : LAM_SUMMARY_SEPARATION;
 }
 
+#define LAM_BROKEN                                                                                                     \
+  0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end                   \
+        */
+
 /* Whether any criterion of the mode is evaluated: it applies to this tissue, and its strength is given if needed. */
 static PetscBool IsJudged(const LamSummary *summary, LamSummaryMode mode)
 {
@@ -23,19 +27,27 @@ static PetscBool IsJudged(const LamSummary *summary, LamSummaryMode mode)
   return PETSC_FALSE;
 }
 
+static PetscBool HasLaw(const LamScene *scene, LamInterfaceLawType law)
+{
+  PetscBool has = (PetscBool)(scene->micro.interface == law);
+
+  for (PetscInt r = 0; r < scene->region_count; r++)
+    if (scene->regions[r].micro.interface == law) has = PETSC_TRUE;
+  return has;
+}
+
 PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary)
 {
-  PetscBool contact = LamCellsPart(scene->micro.interface);
+  const PetscBool contact = HasLaw(scene, LAM_INTERFACE_CONTACT);
   const LamStrength *strength = &scene->strength;
 
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < scene->region_count; r++)
-    if (LamCellsPart(scene->regions[r].micro.interface)) contact = PETSC_TRUE;
   *summary =
       (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1, .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   summary->onset[LAM_SUMMARY_NORMAL].judged = (PetscBool)isfinite(strength->lamella_normal);
   summary->onset[LAM_SUMMARY_SHEAR].judged = (PetscBool)isfinite(strength->lamella_shear);
   summary->onset[LAM_SUMMARY_UNLOADED].judged = contact;
+  summary->onset[LAM_SUMMARY_BROKEN].judged = HasLaw(scene, LAM_INTERFACE_LAMELLA);
   summary->onset[LAM_SUMMARY_GAP].judged = contact;
   summary->onset[LAM_SUMMARY_WALL].judged = (PetscBool)isfinite(strength->wall);
   PetscFunctionReturn(0);
@@ -63,17 +75,21 @@ static PetscReal GapMeasure(const PetscReal field[])
 static PetscReal Measure(const LamSummary *summary, LamSummaryCriterion criterion, const PetscReal field[])
 {
   const LamStrength *strength = &summary->strength;
+  const PetscBool has_lamella = (PetscBool)!isnan(field[LAM_POINT_BROKEN]);
 
   switch (criterion) {
   case LAM_SUMMARY_NORMAL:
     return field[LAM_POINT_NORMAL] / strength->lamella_normal;
   case LAM_SUMMARY_SHEAR:
     return field[LAM_POINT_SHEAR] / strength->lamella_shear;
+  case LAM_SUMMARY_BROKEN:
+    return field[LAM_POINT_BROKEN_FACE] / LAM_BROKEN;
   case LAM_SUMMARY_UNLOADED:
+    if (has_lamella) return 0; /* it holds faces that nothing presses */
     if (isnan(field[LAM_POINT_UNLOADING])) return GapMeasure(field) >= 1 ? PETSC_INFINITY : 0; /* nothing closes them */
     return field[LAM_POINT_UNLOADING] / (1 - LAM_TRACTION_REACHED);
   case LAM_SUMMARY_GAP:
-    return GapMeasure(field);
+    return has_lamella ? 0 : GapMeasure(field); /* it opens before it breaks */
   case LAM_SUMMARY_WALL:
     return field[LAM_POINT_WALL] / strength->wall;
   default:
@@ -467,6 +483,33 @@ static void SetLoadedSide(json_t *o, const LamSummary *summary)
                                 LamJSONReal(summary->curve.rows[k].value[LAM_CURVE_LOAD_FACTOR])));
 }
 
+/* Of a lamella that breaks: at the last step its damage and energies, and the step from which on the curve depends on
+   the mesh of the body; null: none does. */
+static void SetLamella(json_t *o, const LamSummary *summary)
+{
+  static const struct {
+    const char *name;
+    LamCurveColumn column;
+  } members[] = {{"broken_fraction", LAM_CURVE_BROKEN},
+                 {"stored", LAM_CURVE_STORED},
+                 {"dissipated", LAM_CURVE_DISSIPATED},
+                 {"released", LAM_CURVE_RELEASED},
+                 {"tissue_work", LAM_CURVE_TISSUE_WORK}};
+  const LamCurve *curve = &summary->curve;
+  json_t *from = json_null();
+
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(members); k++)
+    json_object_set_new(o, members[k].name, LamJSONReal(curve->rows[curve->count - 1].value[members[k].column]));
+  for (PetscInt k = 0; k < curve->count && json_is_null(from); k++) {
+    const PetscReal *row = curve->rows[k].value;
+
+    if (row[LAM_CURVE_MESH_DEPENDENT] != 0)
+      from = json_pack("{s:I, s:o}", "step", (json_int_t)row[LAM_CURVE_STEP], "load_factor",
+                       LamJSONReal(row[LAM_CURVE_LOAD_FACTOR]));
+  }
+  json_object_set_new(o, "mesh_dependent", from);
+}
+
 json_t *LamSummaryToJSON(const LamSummary *summary)
 {
   json_t *o = json_object();
@@ -474,6 +517,7 @@ json_t *LamSummaryToJSON(const LamSummary *summary)
   if (!summary->curve.count) return o;
   SetOnsets(o, summary);
   json_object_set_new(o, "work", LamJSONReal(summary->curve.rows[summary->curve.count - 1].value[LAM_CURVE_WORK]));
+  if (LamCurveHas(&summary->curve, LAM_CURVE_BROKEN)) SetLamella(o, summary);
   if (summary->side >= 0) SetLoadedSide(o, summary);
   return o;
 }

@@ -5,6 +5,7 @@
 
   Onset. Every material point has measures that reach 1 where its tissue fails: tractions of the lamella and tension of
   the walls over their strengths, and in contact tissue the fraction that its faces have lost of the closing pressure.
+  With law `lamella` it is the share of the fracture energy that is spent along a face family, over LAM_BROKEN.
   If nothing closes the faces (p + g = 0), cells with a gap are separated; else a gap is an opening: freely swelling
   cells round off and open at their junctions long before they separate. (`rve --failure`, whose states are prescribed,
   counts gaps as separation, too.) Between two reported steps the measure of a point is interpolated linearly, as the
@@ -30,6 +31,7 @@
   X(LAM_SUMMARY_NORMAL, "lamella_normal")   /* separation: lamella_normal over its strength */                         \
   X(LAM_SUMMARY_SHEAR, "lamella_shear")     /* separation: lamella_shear over its strength */                          \
   X(LAM_SUMMARY_UNLOADED, "face_unloading") /* separation, contact: a face family carries no load */                   \
+  X(LAM_SUMMARY_BROKEN, "lamella_broken")   /* separation, law lamella: that of a face family is broken */             \
   X(LAM_SUMMARY_GAP, "gap")                 /* opening, contact: a gap above LAM_VISIBLE_GAP, on the RVE's mesh */     \
   X(LAM_SUMMARY_WALL, "wall")               /* rupture: wall_tension over its strength */
 typedef enum { LAM_SUMMARY_CRITERIA(LAM_ENUM_ENTRY) LAM_SUMMARY_CRITERION_COUNT } LamSummaryCriterion;

@@ -49,6 +49,12 @@ static const FE2FieldRow FE2Fields[] = {
     SCALAR("wall_tension_ratio_max", "wall tension over strength, largest", NULL),
     SCALAR("lamella_normal_ratio_max", "normal traction over strength, largest", NULL),
     SCALAR("lamella_shear_ratio_max", "shear traction over strength, largest", NULL),
+    SCALAR("broken_fraction", "broken share of the lamella", NULL),
+    SCALAR("broken_fraction_max", "broken share of the lamella, largest", NULL),
+    SCALAR("broken_face_max", "broken share of a face family, largest", NULL),
+    SCALAR("stored", "energy stored", "kJ/m^3"),
+    SCALAR("dissipated", "energy dissipated", "kJ/m^3"),
+    SCALAR("released", "energy released in jumps", "kJ/m^3"),
     SCALAR("error_estimate", "estimated error of the stress", NULL),
     SCALAR("interpolated", "share of interpolated responses", NULL),
 };
