@@ -2,6 +2,7 @@
   An FE2 run: the macroscale problem of a scene, with material points evaluated by RVE solves, a database or both.
 
     fe2_run.c         lifecycle
+    fe2_tear.c        why a body that tears has no next state
     fe2_response.c    responders of the material points
     fe2_certify.c     reactions corrected by direct solves
     fe2_tissue.c      tissue of each point
@@ -27,6 +28,7 @@
 typedef struct {
   PetscInt64 queries, hits, solves, failures;
   PetscInt steps, newton_iterations;
+  PetscReal largest_force, force; /* on a side: of all steps, and of the last */
 } LamFE2Totals;
 
 typedef struct LamFE2Run_s {
@@ -64,6 +66,7 @@ typedef struct LamFE2Run_s {
   PetscReal wall_ratio[LAM_WALL_PARAMETER_COUNT];
 
   LamFE2Totals totals;
+  PetscReal broken; /* broken_fraction of the last step of this run; 0: there is none */
   PetscReal start;
   LamMacroReason reason;            /* LAM_MACRO_STOPPED: by LamStopRequest */
   char message[LAM_MESSAGE_LENGTH]; /* why it did not converge */
@@ -82,6 +85,13 @@ PetscErrorCode LamFE2EndStep(LamFE2Run *run, const LamMacroStep *step, PetscInt6
    stopped, or a status. Then adds the zooms and closes the files, also after an error. */
 typedef PetscErrorCode (*LamFE2Follow)(void *ctx, PetscBool *stopped, size_t size, char status[]);
 PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ctx);
+
+/* ---- fe2_tear.c ---- */
+/* Counts a step's force. */
+void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroStep *step);
+/* Adds to run->message, of a run that did not converge, what a lamella that breaks has to do with it, and what helps;
+   broken: broken_fraction of the last step. */
+PetscErrorCode LamFE2ExplainTear(LamFE2Run *run);
 
 /* ---- fe2_response.c ---- */
 /* Determines the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
