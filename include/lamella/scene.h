@@ -110,6 +110,10 @@ LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
 
 /* ---- of tissue with law `lamella` (src/core/lamella.c) ---- */
 
+/* Factors of strength and energy of the lamella between a cell and that across its face 0..5, without those of
+   junctions; PETSC_FALSE: of cells that differ none is there. */
+LAM_EXPORT PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, PetscInt face,
+                                           PetscReal *strength, PetscReal *energy);
 /* The stiffness, in (C1 + C2)/a, above which the traction of the lamella can fall without a jump: strength^2/(2 energy),
    the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
 LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);

@@ -54,6 +54,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandTear(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);

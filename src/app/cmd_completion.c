@@ -5,6 +5,7 @@
   DIR a folder, "bash|zsh" one of these words; the words of others are in the table below.
 */
 #include "app.h"
+#include "tear.h"
 #include <ctype.h>
 #include <string.h>
 #include "names.h"
@@ -73,6 +74,8 @@ static PetscErrorCode FindValues(const char argument[], Values *v)
     AddNames(v->words, LAM_FE2_DATABASE + 1, LamFE2ResponseNames);
   } else if (!strcmp(argument, "FAMILY,...")) {
     AddNames(v->words, LAM_KNOB_COUNT, LamKnobNames);
+  } else if (!strcmp(argument, "MODE,...")) {
+    AddNames(v->words, LAM_TEAR_MODE_COUNT, LamTearModeNames);
   } else if (!strcmp(argument, "NAME")) {
     LamPlotVisitFields(AddWord, v->words);
   } else if (!strcmp(argument, "COMMAND")) {

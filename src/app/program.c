@@ -22,6 +22,7 @@ static const struct {
     {"tradeoff", "measure error against time over the scene's knobs", LamCommandTradeoff, PETSC_TRUE},
     {"process", "follow tissue that changes in time", LamCommandProcess, PETSC_TRUE},
     {"map", "how tissue fails over two of its quantities", LamCommandMap, PETSC_TRUE},
+    {"tear", "the traction-separation law of a layer of tissue", LamCommandTear, PETSC_TRUE},
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},

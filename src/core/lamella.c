@@ -14,6 +14,28 @@ static PetscReal Brittleness(PetscReal strength, PetscReal energy)
   return strength > 0.0 ? strength * strength / energy : 0.0;
 }
 
+PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, PetscInt face, PetscReal *strength,
+                                PetscReal *energy)
+{
+  const LamLamella *lamella = &micro->lamella;
+  const LamCell *one, *other;
+  PetscInt neighbour;
+
+  *strength = lamella->face_strength[face % (LAM_FACES / 2)];
+  *energy = lamella->face_energy[face % (LAM_FACES / 2)];
+  if (!micro->cell) return PETSC_TRUE;
+  neighbour = LamLatticeNeighbour(micro, cell, face, NULL, NULL);
+  if (neighbour < 0) return PETSC_FALSE;
+  one = &micro->cell[cell];
+  other = &micro->cell[neighbour];
+  *strength *= PetscMin(one->lamella_strength, other->lamella_strength);
+  *energy *= PetscMin(one->lamella_energy, other->lamella_energy);
+  if (one->cluster == other->cluster) return PETSC_TRUE;
+  *strength *= lamella->between_strength;
+  *energy *= lamella->between_energy;
+  return PETSC_TRUE;
+}
+
 /* The largest of the factors on a face and beside its corners, over the faces of the tissue. */
 static PetscReal WorstFactors(const LamMicrostructure *micro)
 {
@@ -21,22 +43,10 @@ static PetscReal WorstFactors(const LamMicrostructure *micro)
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
   PetscReal worst = 0.0;
 
-  for (PetscInt k = 0; k < cells * LAM_FACES / 2; k++) {
-    const PetscInt c = k / (LAM_FACES / 2), face = k % (LAM_FACES / 2); /* each pair of cells once */
-    PetscReal strength = lamella->face_strength[face], energy = lamella->face_energy[face];
+  for (PetscInt k = 0; k < cells * LAM_FACES / 2; k++) { /* each pair of cells once */
+    PetscReal strength, energy;
 
-    if (micro->cell) {
-      const PetscInt neighbour = LamLatticeNeighbour(micro, c, face, NULL, NULL);
-      const LamCell *one = &micro->cell[c], *other = &micro->cell[PetscMax(neighbour, 0)];
-
-      if (neighbour < 0) continue;
-      strength *= PetscMin(one->lamella_strength, other->lamella_strength);
-      energy *= PetscMin(one->lamella_energy, other->lamella_energy);
-      if (one->cluster != other->cluster) {
-        strength *= lamella->between_strength;
-        energy *= lamella->between_energy;
-      }
-    }
+    if (!LamLamellaFaceFactors(micro, k / (LAM_FACES / 2), k % (LAM_FACES / 2), &strength, &energy)) continue;
     worst = PetscMax(worst, Brittleness(strength, energy));
     if (lamella->junction_length > 0.0)
       worst = PetscMax(worst, Brittleness(strength * lamella->junction_strength, energy * lamella->junction_energy));

@@ -21,7 +21,7 @@ cmp -s out.txt help.txt || fail "help differs from --help"
 expect 1 "did you mean 'query'" "$lamella" help qeury
 expect 1 "one argument too many" "$lamella" help rve fe2
 expect 0 "Usage: lamella help" "$lamella" help help
-for command in check rve build query verify fe2 process tradeoff map plot info; do
+for command in check rve build query verify fe2 process tradeoff map tear plot info; do
   grep -q "^  $command " help.txt || fail "--help does not name $command"
   expect 0 "Usage: lamella $command" "$lamella" $command --help
   [ -s err.txt ] && fail "$command --help goes to stderr"

@@ -1,0 +1,416 @@
+/*
+  Method. The turgor is raised at P = 0 to the tissue free of stress. From there F follows the separation D: opening has
+  F22 = F0_22 + D/h at the lateral stretch F0_11, which what is above and below, stiffer or unloading, holds; shear has
+  F12 = F0_12 + D/h at P22 = 0, for the teeth of the crack slide over each other, and with F22 held would press for
+  ever.
+
+  How far a layer tears is not known before: a curve that ends in less than half of its steps, or not within them, is
+  followed again with steps that fit.
+
+  Energies. Where the exact law of contact and the smooth one take turns, the stored energy of a jump and that between
+  the laws are not told apart. All states are therefore of one law: the smooth one, which knows all of them, unless the
+  scene asks for the exact one. `released` is what the work leaves when stored and dissipated energy are taken away: of
+  a state that falls twice on the way through the parts of a step it counts the fall once.
+
+  The same steps of bonded tissue, as far as the largest traction, give the elastic part of a separation.
+*/
+#include "tear.h"
+#include "clock.h"
+#include "lamella_zone.h"
+#include "plan.h"
+#include "rounding.h"
+#include "turgor_stretch.h"
+#include <math.h>
+
+const char *const LamTearModeNames[] = {LAM_TEAR_MODES(LAM_NAME_ENTRY)};
+const char *const LamTearEndNames[] = {LAM_TEAR_ENDS(LAM_NAME_ENTRY)};
+
+#define INFLATING 8     /* steps: history begins with turgor, and its work is summed to second order */
+#define NOTHING 0.01    /* share of the peak: less counts as nothing, in two states on end */
+#define LEAST_PEAK 1e-7 /* C1 + C2: less is rounding, and nothing holds */
+#define MOST_PASSES 4   /* over a curve, to find its steps */
+#define LENGTHEN 3.0    /* of the separation from pass to pass, where the last one ended too soon */
+#define MARGIN 1.05     /* of the separation over that at which the last pass came apart */
+
+/* ---- a layer under a program ---- */
+
+/* The layer of one tissue and turgor: its state, and where its program begins. */
+typedef struct {
+  LamRVE rve;
+  LamRVEState start, state;
+  PetscReal turgor, cohesion, height;
+  LamTearMode mode;
+  LamStressControl control;
+  LamResponse zero, last; /* of the tissue free of stress, and of the last solved state */
+} Layer;
+
+static PetscReal Area(const Layer *layer)
+{
+  return layer->zero.load.F[0];
+}
+
+/* Row-major index of the component that is driven. */
+static PetscInt Driven(LamTearMode mode)
+{
+  return mode == LAM_TEAR_SHEAR ? 1 : 4;
+}
+
+/* The tissue free of stress; F12 is free, too, where cells differ. */
+static PetscErrorCode Inflate(const LamMicrostructure *micro, Layer *layer)
+{
+  LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .cohesion = layer->cohesion};
+  LamStressControl free = {.given = {[0] = PETSC_TRUE, [4] = PETSC_TRUE}, .share = 1.0};
+
+  PetscFunctionBeginUser;
+  if (micro->cell) free.given[1] = PETSC_TRUE;
+  for (PetscInt k = 1; k <= INFLATING; k++) {
+    load.turgor = layer->turgor * (PetscReal)k / INFLATING;
+    PetscCall(LamRVESolveMixed(layer->rve, &load, &free, layer->start, &layer->zero));
+    if (layer->zero.status != LAM_CONVERGED) break;
+    PetscCall(PetscArraycpy(load.F, layer->zero.load.F, 9));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LayerCreate(LamRVE rve, const LamMicrostructure *micro, PetscReal turgor, PetscReal cohesion,
+                                  PetscReal height, Layer *layer)
+{
+  PetscFunctionBeginUser;
+  *layer = (Layer){.rve = rve, .turgor = turgor, .cohesion = cohesion, .height = height};
+  PetscCall(LamRVEStateCreate(rve, &layer->start));
+  PetscCall(LamRVEStateCreate(rve, &layer->state));
+  PetscCall(Inflate(micro, layer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LayerDestroy(Layer *layer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateDestroy(&layer->start));
+  PetscCall(LamRVEStateDestroy(&layer->state));
+  PetscFunctionReturn(0);
+}
+
+/* Back to the tissue free of stress, for this mode. */
+static PetscErrorCode Begin(Layer *layer, LamTearMode mode)
+{
+  PetscFunctionBeginUser;
+  layer->mode = mode;
+  layer->control = (LamStressControl){.share = 1.0};
+  if (mode == LAM_TEAR_SHEAR) layer->control.given[4] = PETSC_TRUE;
+  PetscCall(LamRVEStateCopy(layer->start, layer->state));
+  layer->last = layer->zero;
+  PetscFunctionReturn(0);
+}
+
+/* Goes on to a separation; *response is also that of a state that was not found. */
+static PetscErrorCode Separate(Layer *layer, PetscReal separation, LamResponse *response)
+{
+  const PetscInt d = Driven(layer->mode);
+  LamLoad load = layer->last.load;
+
+  PetscFunctionBeginUser;
+  load.F[d] = layer->zero.load.F[d] + separation / layer->height;
+  PetscCall(LamRVESolveMixed(layer->rve, &load, &layer->control, layer->state, response));
+  if (response->status == LAM_CONVERGED) layer->last = *response;
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Traction(const Layer *layer, const LamResponse *response)
+{
+  return response->P[Driven(layer->mode)] / Area(layer);
+}
+
+/* Of the traction at the start; in shear F22 follows. */
+static PetscReal Stiffness(const Layer *layer)
+{
+  const PetscReal *A = layer->zero.tangent;
+  const PetscReal slope =
+      layer->mode == LAM_TEAR_SHEAR ? A[9 * 1 + 1] - A[9 * 1 + 4] * A[9 * 4 + 1] / A[9 * 4 + 4] : A[9 * 4 + 4];
+
+  return slope / (layer->height * Area(layer));
+}
+
+/* ---- a curve ---- */
+
+static PetscErrorCode AddPoint(const Layer *layer, const LamResponse *r, LamTearCurve *curve)
+{
+  const LamResponse *zero = &layer->zero;
+  const PetscReal energy = layer->height / Area(layer), *F = r->load.F, *F0 = zero->load.F;
+  const PetscReal work = energy * (r->work - zero->work), stored = energy * (r->stored - zero->stored);
+  const PetscReal dissipated = energy * (r->dissipated - zero->dissipated);
+  const PetscInt d = Driven(layer->mode);
+
+  PetscFunctionBeginUser;
+  PetscCall(LamListGrow(curve->count, sizeof(*curve->points), &curve->capacity, &curve->points));
+  curve->points[curve->count++] =
+      (LamTearPoint){.separation = layer->height * (F[d] - F0[d]),
+                     .traction = Traction(layer, r),
+                     .crack = NAN,
+                     .dilation = layer->mode == LAM_TEAR_SHEAR ? layer->height * (F[4] - F0[4]) : 0.0,
+                     .work = work,
+                     .stored = stored,
+                     .dissipated = dissipated,
+                     .released = work - stored - dissipated,
+                     .broken = r->broken_fraction,
+                     .jumped = r->jumped,
+                     .F = {{F[0], F[1]}, {F[3], F[4]}}};
+  PetscFunctionReturn(0);
+}
+
+static PetscReal Peak(const LamTearCurve *curve)
+{
+  PetscReal peak = 0.0;
+
+  for (PetscInt k = 0; k < curve->count; k++) peak = PetscMax(peak, curve->points[k].traction);
+  return peak;
+}
+
+/* Whether the last two states bear nothing. */
+static PetscBool IsApart(const LamTearCurve *curve)
+{
+  const LamTearPoint *last = curve->points + curve->count - 1;
+  const PetscReal least = NOTHING * Peak(curve);
+
+  return (PetscBool)(curve->count > 2 && last->traction < least && last[-1].traction < least);
+}
+
+static void EndAt(LamTearCurve *curve, const LamResponse *response)
+{
+  curve->end = LamStopRequested() || response->status == LAM_OUT_OF_REACH ? LAM_TEAR_STOPPED : LAM_TEAR_UNSOLVED;
+  snprintf(curve->reason, sizeof(curve->reason), "%s: %s", LamStatusNames[response->status], response->reason);
+}
+
+/* One pass: `steps` equal steps to a separation. */
+static PetscErrorCode Follow(Layer *layer, PetscReal separation, PetscInt steps, LamTearCurve *curve)
+{
+  LamResponse response;
+
+  PetscFunctionBeginUser;
+  PetscCall(Begin(layer, curve->mode));
+  curve->count = 0;
+  curve->end = LAM_TEAR_SEPARATION;
+  PetscCall(AddPoint(layer, &layer->zero, curve));
+  for (PetscInt k = 1; k <= steps; k++) {
+    PetscCall(Separate(layer, separation * (PetscReal)k / (PetscReal)steps, &response));
+    if (response.status != LAM_CONVERGED) {
+      EndAt(curve, &response);
+      break;
+    }
+    PetscCall(AddPoint(layer, &response, curve));
+    if (!IsApart(curve)) continue;
+    curve->end = LAM_TEAR_APART;
+    break;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A first guess of the separation: that of the lamella at failure on all faces, and the elastic one at its strength. */
+static PetscReal FirstGuess(const LamTear *tear, PetscReal stiffness)
+{
+  const LamLamella *lamella = &tear->scene->micro.lamella;
+
+  return 4.0 * lamella->energy / lamella->strength + lamella->strength / PetscMax(stiffness, lamella->strength);
+}
+
+/* In shear beyond half a cell the crack's teeth slide down into the next ones. */
+static PetscReal Farthest(const Layer *layer, LamTearMode mode)
+{
+  return mode == LAM_TEAR_SHEAR ? Area(layer) : PETSC_INFINITY;
+}
+
+static PetscErrorCode FollowToEnd(LamTear *tear, Layer *layer, LamTearCurve *curve)
+{
+  const PetscReal given = tear->separation / tear->scene->scales.length, farthest = Farthest(layer, curve->mode);
+  PetscReal separation = given > 0.0 ? given : PetscMin(farthest, FirstGuess(tear, curve->stiffness));
+
+  PetscFunctionBeginUser;
+  for (PetscInt pass = 0; pass < MOST_PASSES; pass++) {
+    PetscCall(Follow(layer, separation, tear->steps, curve));
+    if (given > 0.0 || curve->end == LAM_TEAR_UNSOLVED || curve->end == LAM_TEAR_STOPPED) break;
+    if (curve->end == LAM_TEAR_APART) {
+      if (2 * curve->count > tear->steps) break;
+      separation = MARGIN * curve->points[curve->count - 1].separation;
+    } else {
+      if (separation >= farthest) break;
+      separation = PetscMin(farthest, LENGTHEN * separation);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* ---- the elastic part ---- */
+
+/* Separation of the elastic curve (n points, rising) under a traction; NaN beyond it. */
+static PetscReal ElasticAt(PetscInt n, const PetscReal separation[], const PetscReal traction[], PetscReal at)
+{
+  for (PetscInt k = 1; k < n; k++)
+    if (at <= traction[k])
+      return separation[k - 1] +
+             (separation[k] - separation[k - 1]) * (at - traction[k - 1]) / (traction[k] - traction[k - 1]);
+  return n ? NAN : 0.0;
+}
+
+static PetscErrorCode SetCrack(Layer *bonded, LamTearCurve *curve)
+{
+  const PetscReal peak = Peak(curve);
+  PetscReal *separation, *traction;
+  PetscInt n = 1;
+  LamResponse response;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(curve->count + 1, &separation, curve->count + 1, &traction));
+  PetscCall(Begin(bonded, curve->mode));
+  while (n < curve->count && traction[n - 1] < peak && bonded->zero.status == LAM_CONVERGED) {
+    separation[n] = curve->points[n].separation;
+    PetscCall(Separate(bonded, separation[n], &response));
+    if (response.status != LAM_CONVERGED) break;
+    traction[n] = Traction(bonded, &response);
+    if (!(traction[n] > traction[n - 1])) break;
+    n++;
+  }
+  for (PetscInt k = 0; k < curve->count; k++) {
+    LamTearPoint *p = &curve->points[k];
+
+    p->crack = p->separation - ElasticAt(n, separation, traction, p->traction);
+  }
+  PetscCall(PetscFree2(separation, traction));
+  PetscFunctionReturn(0);
+}
+
+/* ---- all curves ---- */
+
+static PetscErrorCode Tear(LamTear *tear, Layer *layer, Layer *bonded, LamTearMode mode)
+{
+  const LamResponse *zero = &layer->zero;
+  LamTearCurve curve = {.mode = mode, .turgor = layer->turgor, .F0 = {NAN, NAN}, .stiffness = NAN, .straight = NAN};
+
+  PetscFunctionBeginUser;
+  if (zero->status == LAM_CONVERGED) {
+    PetscCall(Begin(layer, mode));
+    curve.F0[0] = zero->load.F[0];
+    curve.F0[1] = zero->load.F[4];
+    curve.stiffness = Stiffness(layer);
+    curve.straight = tear->layer.energy / Area(layer);
+    PetscCall(FollowToEnd(tear, layer, &curve));
+    PetscCall(SetCrack(bonded, &curve));
+    if (curve.end != LAM_TEAR_STOPPED && !(Peak(&curve) > LEAST_PEAK)) curve.end = LAM_TEAR_TORN;
+  } else {
+    EndAt(&curve, zero);
+    if (curve.end == LAM_TEAR_UNSOLVED) curve.end = LAM_TEAR_TORN;
+  }
+  tear->curves++;
+  if (curve.end == LAM_TEAR_UNSOLVED) tear->unsolved++;
+  if (tear->curve) PetscCall(tear->curve(tear->reporter.ctx, tear, &curve));
+  PetscCall(PetscFree(curve.points));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TearUnder(LamTear *tear, PetscReal turgor, PetscInt total)
+{
+  const LamScene *scene = tear->scene;
+  LamMicrostructure bonded_micro = scene->micro;
+  Layer layer, bonded;
+
+  PetscFunctionBeginUser;
+  bonded_micro.interface = LAM_INTERFACE_BONDED;
+  PetscCall(LayerCreate(tear->rve, &scene->micro, turgor, scene->cohesion, tear->layer.height, &layer));
+  PetscCall(LayerCreate(tear->bonded, &bonded_micro, turgor, 0.0, tear->layer.height, &bonded));
+  for (int mode = 0; mode < LAM_TEAR_MODE_COUNT && !LamStopRequested(); mode++) {
+    if (!tear->mode[mode]) continue;
+    PetscCall(Tear(tear, &layer, &bonded, (LamTearMode)mode));
+    PetscCall(LamReportProgress(&tear->reporter, tear->curves, total, tear->unsolved));
+  }
+  PetscCall(LayerDestroy(&bonded));
+  PetscCall(LayerDestroy(&layer));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckScene(const LamScene *scene)
+{
+  const LamMicrostructure *micro = &scene->micro;
+
+  PetscFunctionBeginUser;
+  PetscCheck(micro->interface == LAM_INTERFACE_LAMELLA, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.interface.law: %s: has no energy of fracture, without which tissue does not tear; write law: "
+             "lamella, with strength and fracture_energy",
+             scene->path, LamInterfaceLawNames[micro->interface]);
+  PetscCheck(!micro->is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.patch: a block of cells between grips is no layer that goes on to both sides; write rve.cells",
+             scene->path);
+  PetscCheck(!scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.turgor.mode: sealed: the law of a layer is that under a given turgor; write mode: prescribed",
+             scene->path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTearPrepare(LamTear *tear)
+{
+  LamScene *scene = tear->scene, bonded;
+  MPI_Comm comm;
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckScene(scene));
+  PetscCall(LamTearLayerOf(scene->path, &scene->micro, &tear->layer));
+  PetscCall(LamPlanMake(scene, &plan));
+  PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &tear->reporter, &plan.micro, scene->accuracy));
+  LamWarnOfMesh(PETSC_COMM_WORLD, &tear->reporter, scene, &plan.trial);
+  LamWarnOfTurgor(&tear->reporter, scene);
+  LamWarnOfZone(PETSC_COMM_WORLD, &tear->reporter, &plan.micro, &scene->scales);
+  scene->micro = plan.micro;
+  if (scene->micro.sharpness == LAM_SHARPNESS_AUTO) scene->micro.sharpness = LAM_SHARPNESS_SMOOTH;
+  comm = plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD;
+  PetscCall(LamSceneRVECreate(comm, scene, &tear->rve));
+  bonded = *scene;
+  bonded.micro.interface = LAM_INTERFACE_BONDED;
+  PetscCall(LamSceneRVECreate(comm, &bonded, &tear->bonded));
+  PetscCall(LamRVESetInterrupt(tear->rve, LamStopInterrupt, NULL));
+  PetscCall(LamRVESetInterrupt(tear->bonded, LamStopInterrupt, NULL));
+  PetscCall(LamRVESetWanted(tear->rve, LAM_WANT_STRESS | LAM_WANT_DERIVATIVES | LAM_WANT_INDICATORS | LAM_WANT_JUMPS));
+  PetscCall(LamRVESetWanted(tear->bonded, LAM_WANT_STRESS | LAM_WANT_DERIVATIVES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamTearRun(LamTear *tear)
+{
+  const PetscInt turgors = PetscMax(1, tear->turgor_count);
+  PetscInt modes = 0;
+
+  PetscFunctionBeginUser;
+  for (int mode = 0; mode < LAM_TEAR_MODE_COUNT; mode++) modes += tear->mode[mode];
+  for (PetscInt k = 0; k < turgors && !LamStopRequested(); k++)
+    PetscCall(TearUnder(tear, tear->turgor_count ? tear->turgor[k] / tear->scene->scales.stress : tear->scene->turgor,
+                        turgors * modes));
+  PetscFunctionReturn(0);
+}
+
+LamTearReadings LamTearRead(const LamTearCurve *curve)
+{
+  LamTearReadings r = {.at = NAN};
+
+  if (!curve->count) return r;
+  for (PetscInt k = 0; k < curve->count; k++) {
+    const LamTearPoint *p = &curve->points[k];
+
+    if (p->traction > r.strength) {
+      r.strength = p->traction;
+      r.at = p->separation;
+    }
+    if (k) r.law += 0.5 * (p->traction + p[-1].traction) * (p->crack - p[-1].crack);
+  }
+  const LamTearPoint *last = &curve->points[curve->count - 1];
+
+  r.energy = last->dissipated + last->released;
+  r.share = r.energy > 0.0 ? last->released / r.energy : NAN;
+  return r;
+}
+
+PetscErrorCode LamTearDestroy(LamTear *tear)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEDestroy(&tear->rve));
+  PetscCall(LamRVEDestroy(&tear->bonded));
+  PetscCall(LamSceneDestroy(&tear->scene));
+  PetscFunctionReturn(0);
+}
