@@ -333,6 +333,7 @@ static PetscErrorCode SumLamella(LamMacro macro, LamMacroStep *step)
 {
   enum { VOLUME, BROKEN, STORED, DISSIPATED, RELEASED, WORK, SUMS };
   PetscReal sum[SUMS] = {0};
+  PetscBool any;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < macro->point_count; p++) {
@@ -347,13 +348,13 @@ static PetscErrorCode SumLamella(LamMacro macro, LamMacroStep *step)
     sum[WORK] += weight * field[LAM_POINT_WORK];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, SUMS, MPIU_REAL, MPIU_SUM, macro->comm));
-  for (int k = 0; k < SUMS && sum[VOLUME] == 0; k++) sum[k] = NAN;
-  step->broken_fraction = sum[BROKEN] / sum[VOLUME];
-  step->stored = sum[STORED];
-  step->dissipated = sum[DISSIPATED];
-  step->released = sum[RELEASED];
-  step->tissue_work = sum[WORK];
-  if (sum[VOLUME] > 0 && step->localised_points) step->mesh_dependent = PETSC_TRUE;
+  any = (PetscBool)(sum[VOLUME] > 0);
+  step->broken_fraction = any ? sum[BROKEN] / sum[VOLUME] : NAN;
+  step->stored = any ? sum[STORED] : NAN;
+  step->dissipated = any ? sum[DISSIPATED] : NAN;
+  step->released = any ? sum[RELEASED] : NAN;
+  step->tissue_work = any ? sum[WORK] : NAN;
+  if (any && step->localised_points) step->mesh_dependent = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

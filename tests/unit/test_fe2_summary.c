@@ -35,7 +35,9 @@ static void Begin(Run *run, LamInterfaceLawType interface, LamStrength strength)
   for (int p = 0; p < POINTS; p++) {
     run->place[p][0] = 0.1 * p;
     run->volume[p] = 1 + p;
+    run->point[p][LAM_POINT_BROKEN] = run->point[p][LAM_POINT_BROKEN_FACE] = NAN; /* of no lamella */
   }
+  run->step.broken_fraction = NAN;
   run->first_point[1] = 2;
   run->first_point[2] = POINTS;
   assert_int_equal(LamSummaryCreate(&run->scene, &run->summary), 0);
@@ -158,4 +160,34 @@ RUN_TEST(a_cycle_has_its_turning_point, LAM_INTERFACE_BONDED, none)
   assert_near(run->summary.stiffness.secant, 2, 1e-12);
   assert_near(run->summary.stiffness.final, 2, 1e-12);
   assert_int_equal(run->summary.firmest, 2);
+}
+
+/* A lamella separates where that of a face family is broken; it has gaps and unloaded faces long before. From the step
+   at which ellipticity is lost the curve is marked. */
+RUN_TEST(a_lamella_separates_where_it_is_broken, LAM_INTERFACE_LAMELLA, none)
+{
+  const LamSummaryOnset *onset = &run->summary.onset[LAM_SUMMARY_BROKEN];
+  json_t *summary;
+
+  for (int p = 0; p < POINTS; p++) {
+    run->point[p][LAM_POINT_GAP] = 100 * LAM_VISIBLE_GAP;
+    run->point[p][LAM_POINT_UNLOADING] = 1;
+    run->point[p][LAM_POINT_BROKEN] = 0.1;
+    run->point[p][LAM_POINT_BROKEN_FACE] = 0.2;
+  }
+  run->step.broken_fraction = 0.1;
+  Add(run, 1, 0);
+  assert_false(run->summary.onset[LAM_SUMMARY_GAP].judged || run->summary.onset[LAM_SUMMARY_UNLOADED].judged);
+  assert_true(onset->judged && !onset->reached);
+  run->point[2][LAM_POINT_BROKEN_FACE] = 1;
+  run->step.mesh_dependent = PETSC_TRUE;
+  run->step.broken_fraction = 0.3;
+  Add(run, 2, 0);
+  assert_true(onset->reached);
+  assert_near(onset->share, 0.79 / 0.8, 1e-12);
+  assert_near(run->summary.curve.rows[1].value[LAM_CURVE_SEPARATED], 0.3, 1e-14);
+  summary = LamSummaryToJSON(&run->summary);
+  assert_int_equal(json_integer_value(json_object_get(json_object_get(summary, "mesh_dependent"), "step")), 1);
+  assert_near(json_number_value(json_object_get(summary, "broken_fraction")), 0.3, 0);
+  json_decref(summary);
 }
