@@ -56,6 +56,28 @@ for name in one[0]:
 PYTHON
 fi
 
+# cells of a zoom are those of the run, with its history, also where tissues differ
+tissue interface="$law" turgor='mode: prescribed, pressure: 0.01 MPa' mesh='along: 3, through: 1' >regions.yaml <<'YAML'
+macro:
+  mesh: {box: [1 mm, 1 mm], elements: [1, 2]}
+  boundary:
+    - {on: bottom, displacement: [0 mm, 0 mm]}
+    - {on: top, displacement: [0.02 mm, 0.12 mm], history: [[0, 0], [0.5, 1], [1, 0.3]]}
+  regions: [{name: weak, where: "y > 0.5", interface: {strength: 0.01 MPa}}]
+  zoom: [[0.5 mm, 0.75 mm], [0.5 mm, 0.25 mm]]
+  inflate: true
+  steps: 4
+YAML
+expect 0 "$lamella" fe2 regions.yaml -o regions.h5 --quiet
+if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+  /usr/bin/python3 - <<'PYTHON' || fail "a zoom has other cells than the run"
+import h5py
+with h5py.File("regions.h5") as f:
+    assert f["macro/curve/broken_fraction"][-1] > 0.02
+    assert len(f["zoom/difference"]) == 2 and max(f["zoom/difference"]) < 1e-9, f["zoom/difference"][()]
+PYTHON
+fi
+
 # other tissue has none of this, and a table none of this tissue
 scene 'law: bonded' '[0.01 mm, 0.02 mm]' 0 2 >bonded.yaml
 expect 0 "$lamella" fe2 bonded.yaml -o bonded.h5 --json --quiet
