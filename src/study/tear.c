@@ -7,10 +7,10 @@
   How far a layer tears is not known before: a curve that ends in less than half of its steps, or not within them, is
   followed again with steps that fit.
 
-  Energies. `released` is what the work leaves when stored and dissipated energy are taken away. So it counts a state
-  once that falls twice on the way through the parts of a step, and a fall in which the exact law of contact and the
-  smooth one take turns, whose energies differ a little; with either law throughout the energies of a curve are within 2
-  %.
+  Energies. Where the exact law of contact and the smooth one take turns, the stored energy of a jump and that between
+  the laws are not told apart. All states are therefore of one law: the smooth one, which knows all of them, unless the
+  scene asks for the exact one. `released` is what the work leaves when stored and dissipated energy are taken away: of
+  a state that falls twice on the way through the parts of a step it counts the fall once.
 
   The same steps of bonded tissue, as far as the largest traction, give the elastic part of a separation.
 */
@@ -25,13 +25,12 @@
 const char *const LamTearModeNames[] = {LAM_TEAR_MODES(LAM_NAME_ENTRY)};
 const char *const LamTearEndNames[] = {LAM_TEAR_ENDS(LAM_NAME_ENTRY)};
 
-#define INFLATING 8          /* steps: history begins with turgor, and its work is summed to second order */
-#define NOTHING 0.01         /* share of peak and first stiffness: less counts as nothing */
-#define LEAST_PEAK 1e-7      /* C1 + C2: less is rounding, and nothing holds */
-#define LEAST_STIFFNESS 1e-6 /* C1 + C2: less is rounding */
-#define MOST_PASSES 4        /* over a curve, to find its steps */
-#define LENGTHEN 3.0         /* of the separation from pass to pass, where the last one ended too soon */
-#define MARGIN 1.05          /* of the separation over that at which the last pass came apart */
+#define INFLATING 8     /* steps: history begins with turgor, and its work is summed to second order */
+#define NOTHING 0.01    /* share of the peak: less counts as nothing, in two states on end */
+#define LEAST_PEAK 1e-7 /* C1 + C2: less is rounding, and nothing holds */
+#define MOST_PASSES 4   /* over a curve, to find its steps */
+#define LENGTHEN 3.0    /* of the separation from pass to pass, where the last one ended too soon */
+#define MARGIN 1.05     /* of the separation over that at which the last pass came apart */
 
 /* ---- a layer under a program ---- */
 
@@ -122,13 +121,14 @@ static PetscReal Traction(const Layer *layer, const LamResponse *response)
   return response->P[Driven(layer->mode)] / Area(layer);
 }
 
-/* Of the traction over the separation; in shear F22 follows, where anything holds it. */
-static PetscReal Stiffness(const Layer *layer, const LamResponse *response)
+/* Of the traction at the start; in shear F22 follows. */
+static PetscReal Stiffness(const Layer *layer)
 {
-  const PetscReal *A = response->tangent, across = A[9 * 4 + 4], scale = layer->height * Area(layer);
+  const PetscReal *A = layer->zero.tangent;
+  const PetscReal slope =
+      layer->mode == LAM_TEAR_SHEAR ? A[9 * 1 + 1] - A[9 * 1 + 4] * A[9 * 4 + 1] / A[9 * 4 + 4] : A[9 * 4 + 4];
 
-  if (layer->mode == LAM_TEAR_OPENING) return across / scale;
-  return (A[9 * 1 + 1] - (across > LEAST_STIFFNESS ? A[9 * 1 + 4] * A[9 * 4 + 1] / across : 0.0)) / scale;
+  return slope / (layer->height * Area(layer));
 }
 
 /* ---- a curve ---- */
@@ -166,12 +166,13 @@ static PetscReal Peak(const LamTearCurve *curve)
   return peak;
 }
 
-/* Whether the last state bears nothing, and would not with a little more separation. A layer without any hold is slow
-   to solve: there is no state behind this one. */
-static PetscBool IsApart(const Layer *layer, const LamTearCurve *curve)
+/* Whether the last two states bear nothing. */
+static PetscBool IsApart(const LamTearCurve *curve)
 {
-  return (PetscBool)(fabs(curve->points[curve->count - 1].traction) < NOTHING * Peak(curve) &&
-                     fabs(Stiffness(layer, &layer->last)) < NOTHING * curve->stiffness);
+  const LamTearPoint *last = curve->points + curve->count - 1;
+  const PetscReal least = NOTHING * Peak(curve);
+
+  return (PetscBool)(curve->count > 2 && last->traction < least && last[-1].traction < least);
 }
 
 static void EndAt(LamTearCurve *curve, const LamResponse *response)
@@ -197,7 +198,7 @@ static PetscErrorCode Follow(Layer *layer, PetscReal separation, PetscInt steps,
       break;
     }
     PetscCall(AddPoint(layer, &response, curve));
-    if (!IsApart(layer, curve)) continue;
+    if (!IsApart(curve)) continue;
     curve->end = LAM_TEAR_APART;
     break;
   }
@@ -289,7 +290,7 @@ static PetscErrorCode Tear(LamTear *tear, Layer *layer, Layer *bonded, LamTearMo
     PetscCall(Begin(layer, mode));
     curve.F0[0] = zero->load.F[0];
     curve.F0[1] = zero->load.F[4];
-    curve.stiffness = Stiffness(layer, zero);
+    curve.stiffness = Stiffness(layer);
     curve.straight = tear->layer.energy / Area(layer);
     PetscCall(FollowToEnd(tear, layer, &curve));
     PetscCall(SetCrack(bonded, &curve));
@@ -358,6 +359,7 @@ PetscErrorCode LamTearPrepare(LamTear *tear)
   LamWarnOfTurgor(&tear->reporter, scene);
   LamWarnOfZone(PETSC_COMM_WORLD, &tear->reporter, &plan.micro, &scene->scales);
   scene->micro = plan.micro;
+  if (scene->micro.sharpness == LAM_SHARPNESS_AUTO) scene->micro.sharpness = LAM_SHARPNESS_SMOOTH;
   comm = plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD;
   PetscCall(LamSceneRVECreate(comm, scene, &tear->rve));
   bonded = *scene;

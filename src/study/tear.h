@@ -22,8 +22,7 @@ extern const char *const LamTearModeNames[]; /* "opening", "shear" */
 
 /* Why a curve ends. */
 #define LAM_TEAR_ENDS(X)                                                                                               \
-  X(LAM_TEAR_APART,                                                                                                    \
-    "apart") /* traction and stiffness have fallen below a hundredth of the peak and of the first stiffness */         \
+  X(LAM_TEAR_APART, "apart")           /* the traction has fallen below a hundredth of its peak, and stays there */    \
   X(LAM_TEAR_SEPARATION, "separation") /* the largest separation is reached, and something holds */                    \
   X(LAM_TEAR_TORN, "torn_by_turgor")   /* nothing holds in the tissue that is free of stress, or it has no such state  \
                                         */                                                                             \
