@@ -236,6 +236,8 @@ static PetscErrorCode Descend(Search *s, PetscBool *found)
 /* Full solve at `load` from `from`, then descent. */
 static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState from, PetscBool *found)
 {
+  const PetscBool looks_back = s->rve->looks_back; /* of a step that is taken again in parts, of which this is one */
+
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   s->most = s->iterations + BUDGET;
@@ -251,7 +253,7 @@ static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState fr
   } else {
     PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
   }
-  s->rve->looks_back = PETSC_FALSE;
+  s->rve->looks_back = looks_back;
   PetscCall(LamRVEStateDestroy(&s->history));
   PetscFunctionReturn(0);
 }
