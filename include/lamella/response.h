@@ -27,6 +27,7 @@ typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
 LAM_EXPORT extern const char *const LamSourceNames[];
 
 #define LAM_VISIBLE_GAP 1e-3 /* apothems: larger gaps count as open */
+#define LAM_BROKEN 0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end */
 #define LAM_UNKNOWN_COUNT -1 /* an unknown count; null in JSON */
 
 /*
@@ -98,18 +99,18 @@ typedef struct {
      relative motion of its sides. Unknown if the tangent is unknown */
   PetscReal ellipticity, localisation_normal[3], localisation_mode[3];
   PetscReal lowest_eigenvalue;     /* estimate for the softest mode if computed (unstable states), else NaN */
-  PetscInt floating_cells;         /* cells without any contact */
+  PetscInt floating_cells;         /* cells without any contact or lamella */
   PetscInt zero_modes;             /* zero-energy motions of the cells: sliding or spinning */
-  PetscInt cell_clusters;          /* groups of cells connected by contact */
+  PetscInt cell_clusters;          /* groups of cells connected by contact or a lamella */
   PetscInt percolating_directions; /* number of independent period directions, 0 to 2, that a group spans */
   PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
-  /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated
-   */
+  /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated;
+     work and released are known if all states so far were solved with LAM_WANT_STRESS */
   PetscReal stored;     /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
   PetscReal dissipated; /* spent in the lamella */
   PetscReal work;       /* of stress, turgor and suction, by the trapezoidal rule: stored + dissipated + released */
-  PetscReal released;   /* lost in jumps, i.e. to sound and heat; known with LAM_WANT_JUMPS in all states so far */
+  PetscReal released;   /* lost in jumps, i.e. to sound and heat */
   PetscReal broken_fraction; /* share of the lamella's fracture energy that is spent */
   PetscReal broken_by_face[3];
   PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */

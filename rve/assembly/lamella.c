@@ -5,26 +5,6 @@ static PetscInt EdgeOf(PetscInt point)
   return point / LAM_EDGE_POINTS;
 }
 
-/* Factors of strength and energy between two cells. */
-static void FaceFactors(const LamMicrostructure *micro, const LamContactFace *face, PetscReal *strength,
-                        PetscReal *energy)
-{
-  const LamLamella *lamella = &micro->lamella;
-  const LamCell *a, *b;
-
-  *strength = lamella->face_strength[face->face];
-  *energy = lamella->face_energy[face->face];
-  if (LamLatticeIsCut(micro, face->cell, face->other)) *strength = *energy = 0.0;
-  if (!micro->cell) return;
-  a = &micro->cell[face->cell];
-  b = &micro->cell[face->other];
-  *strength *= PetscMin(a->lamella_strength, b->lamella_strength);
-  *energy *= PetscMin(a->lamella_energy, b->lamella_energy);
-  if (a->cluster == b->cluster) return;
-  *strength *= lamella->between_strength;
-  *energy *= lamella->between_energy;
-}
-
 static LamCohesive LawAt(const LamLamella *lamella, PetscReal strength, PetscReal energy, PetscBool junction)
 {
   strength *= junction ? lamella->junction_strength : 1.0;
@@ -54,10 +34,12 @@ PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mes
       PetscMalloc3(layer->count, &layer->weight, layer->count, &layer->bond, EdgeOf(layer->count), &layer->first));
   for (PetscInt p = 0; p < layer->count; ++p) {
     const PetscInt e = EdgeOf(p) % mesh->along;
+    const LamContactFace *of = &contact->faces[EdgeOf(p) / mesh->along];
     const PetscReal at = face * LamMeshShare(mesh, (PetscReal)e + LamEdgePlace(p % LAM_EDGE_POINTS));
     PetscReal strength, energy;
 
-    FaceFactors(micro, &contact->faces[EdgeOf(p) / mesh->along], &strength, &energy);
+    (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
+    if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
     layer->bond[p].law =
         LawAt(&micro->lamella, strength, energy, (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length));
     layer->weight[p] = LamEdgeWeight(p % LAM_EDGE_POINTS) * contact->J0[e];
@@ -211,10 +193,11 @@ static void AddEdge(void *ctx, const LamEdgeBlock *block)
   for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += block->sum.f[i];
   for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
     for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++first) {
+      const PetscInt one = block->class[i], other = block->class[j];
       PetscInt entry[2][2];
 
       if (*first < 0) continue;
-      LamLinearEntries(linear, block->class[i], block -> class[j], *first, entry);
+      LamLinearEntries(linear, one, other, *first, entry);
       for (PetscInt d = 0; d < 2; ++d)
         for (PetscInt e = i == j ? d : 0; e < 2; ++e) linear->values[entry[d][e]] += block->sum.K[2 * i + d][2 * j + e];
     }

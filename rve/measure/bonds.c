@@ -20,8 +20,6 @@ static void AddBond(void *ctx, const LamBondPoint *point)
   bonds->toughness[family] += weight * bond->now.energy;
 }
 
-#define BROKEN 0.99 /* share of the fracture energy from which on a point counts as broken: some laws never end */
-
 typedef struct {
   LamRVE rve;
   LamLayerForces *forces;
@@ -39,7 +37,7 @@ static void AddHolding(void *ctx, const LamBondPoint *point)
   LamBondTraction(bond, &point->jump, 2.0 * point->step.d, traction); /* d phi/d q = omega k/2 */
   h->forces->normal[point->point] = weight * traction[0];
   h->forces->shear[point->point] = weight * traction[1];
-  if (LamEnvelopeSpent(&bond->now, point->step.kappa) < BROKEN * bond->now.energy) h->forces->held[hat] += weight;
+  if (LamEnvelopeSpent(&bond->now, point->step.kappa) < LAM_BROKEN * bond->now.energy) h->forces->held[hat] += weight;
 }
 
 PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerForces *forces)

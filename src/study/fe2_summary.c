@@ -15,10 +15,6 @@ static LamSummaryMode ModeOf(LamSummaryCriterion criterion)
   return criterion == LAM_SUMMARY_WALL ? LAM_SUMMARY_RUPTURE : LAM_SUMMARY_SEPARATION;
 }
 
-#define LAM_BROKEN                                                                                                     \
-  0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end                   \
-        */
-
 /* Whether any criterion of the mode is evaluated: it applies to this tissue, and its strength is given if needed. */
 static PetscBool IsJudged(const LamSummary *summary, LamSummaryMode mode)
 {

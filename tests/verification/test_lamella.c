@@ -166,6 +166,43 @@ TEST(StiffLamellaTendsToBondedTissue)
   assert_true(error[1] < 0.12 * error[0]);
 }
 
+/* Frobenius norm of the change of the tangent in the plane over that of the first. */
+static double TangentChange(const LamResponse *from, const LamResponse *to)
+{
+  double change = 0, whole = 0;
+
+  for (int k = 0; k < 4; k++)
+    for (int l = 0; l < 4; l++) {
+      const int at = 9 * components[k] + components[l];
+
+      change += pow(to->tangent[at] - from->tangent[at], 2);
+      whole += pow(from->tangent[at], 2);
+    }
+  return sqrt(change / whole);
+}
+
+/* The formula of the price, at thin and thick walls with and without fibres. */
+TEST(StiffnessCostsWhatCheckSays)
+{
+  for (int k = 0; k < 4; k++) {
+    const LamLoad rest = PlaneLoad(1, 0, 0, 1, 0);
+    LamMicrostructure micro = LamellaTissue(1e6);
+    LamResponse bonded, r;
+
+    micro.along = 12; /* the forces that part walls pass near the corners */
+    micro.through = 2;
+    micro.grading = 0.6;
+    micro.wall_thickness = k % 2 ? 0.25 : 0.06;
+    micro.wall.C4 = k / 2 ? 9.0 : 0.0;
+    micro.lamella.strength = micro.lamella.shear_strength = 100.0;
+    micro.interface = LAM_INTERFACE_BONDED;
+    bonded = SolveTissue(&micro, rest);
+    micro.interface = LAM_INTERFACE_LAMELLA;
+    r = SolveTissue(&micro, rest);
+    assert_near(TangentChange(&bonded, &r) / LamLamellaCompliance(&micro), 1.0, 0.15);
+  }
+}
+
 /* The paper's cohesion g acts at any gap, on the current area and in the voids of junctions; a lamella of strength g
    without end acts on the reference area of faces. They agree where faces open without slip, by little. */
 TEST(EndlessLamellaTendsToCohesion)
