@@ -249,12 +249,13 @@ static PetscBool AreOpposed(const LamWallSpan *own, PetscInt q, const LamTouchGa
 }
 
 /* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
-   same cell; in another cell it may have come through from the opposite wall, whose normal is then not opposed. */
+   same cell. In another cell it may have come through from the opposite wall, or lie on the next wall around an acute
+   corner, and is then behind this one without having entered it: the normals are not opposed. */
 static PetscBool Counts(const Pair *p, const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
 {
   if (!(gap->gap < p->width)) return PETSC_FALSE;
-  if (gap->gap >= -p->walls->thickness[p->other / 2]) return PETSC_TRUE;
-  return (PetscBool)(!p->itself && gap->gap >= -DEEPEST && AreOpposed(own, q, gap));
+  if (p->itself) return (PetscBool)(gap->gap >= -p->walls->thickness[p->other / 2]);
+  return (PetscBool)(gap->gap >= -p->width || (gap->gap >= -DEEPEST && AreOpposed(own, q, gap)));
 }
 
 /* Whether all of a box is farther outside a span than the width. */

@@ -293,7 +293,8 @@ static int Touches(const LamWalls *walls, const double c[LAM_SPAN][2], const dou
   LamTouchGapAt(&curve, X, LamSplineClosest(&curve, X), &gap);
   opposed = tau[1] * gap.normal[0] - tau[0] * gap.normal[1];
   if (gap.gap >= WIDTH) return 0;
-  return gap.gap >= -walls->thickness[0] || (!itself && gap.gap >= -DEEPEST && opposed < 0.0);
+  if (itself) return gap.gap >= -walls->thickness[0];
+  return gap.gap >= -WIDTH || (gap.gap >= -DEEPEST && opposed < 0.0);
 }
 
 /* Takes off what must be found of a point of a wall, in one image. */
@@ -334,6 +335,25 @@ TEST_ON(AllImagesOfAShearedPeriodAreFound, Pairs, p, PairsEnter(p, rest[ONE].rve
     for (int j = -PERIODS; j <= PERIODS; j++)
       for (int k = 0; k < LAM_TOUCH_POINTS * n; k++) TakePoint(p, k / LAM_TOUCH_POINTS, k % LAM_TOUCH_POINTS, i, j);
   for (size_t k = 0; k < (size_t)(IMAGES * IMAGES * LAM_TOUCH_POINTS * n * n); k++) assert_int_equal(p->found[k], 0);
+}
+
+static void CountDeep(void *ctx, const LamTouching *touch)
+{
+  *(int *)ctx += touch->gap.gap < -WIDTH;
+}
+
+/* At a corner of less than 90 degrees points on one wall lie behind the other, which they have not entered. */
+TEST(WallsAtAcuteCornersDoNotEnterEachOther)
+{
+  static const double F[9] = {0.6, 0, 0, 0, 1.7, 0, 0, 0, 1};
+  const LamRVE rve = rest[ONE].rve;
+  OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
+  int deep = 0;
+
+  for (int k = 0; k < rve->ndof; k++) at->y[k] = F[4 * (k % 2)] * rve->mesh.class_X[k];
+  LamWallsPlace(WallsOf(rve), F, at->y);
+  LamWallsVisit(WallsOf(rve), WIDTH, CountDeep, &deep);
+  assert_int_equal(deep, 0);
 }
 
 TEST_ON(ShearedPeriodTouchesImagesFarAway, Pairs, p, PairsEnter(p, rest[ONE].rve), free(p->found))
