@@ -31,17 +31,26 @@ static PetscBool BreaksMuch(LamRVE rve, const LamRVEState from, const LamRVEStat
   return (PetscBool)(to->spent - from->spent > MOST * rve->layer->toughness);
 }
 
-/* Energies of different laws of contact differ a little. */
-static PetscBool HasJumped(LamRVE rve, const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+/* Most by which energies of different laws of contact differ, per V0: walls of the smooth one lie in each other by a
+   part of its width, and there is one length of interface, in apothems, to one area. */
+static PetscReal BetweenLaws(const LamRVEState from, const LamRVEState to)
 {
-  if (from->width != to->width && !BreaksMuch(rve, from, to)) return PETSC_FALSE;
-  return (PetscBool)(-step->defect > LAM_LEAST_LOSS && -step->defect > LOST * (to->spent - from->spent) &&
+  const PetscReal most = PetscMax(LamLargestEntry(LAM_F_COUNT, from->energy + 1),
+                                  LamLargestEntry(LAM_F_COUNT, to->energy + 1)); /* P, of the order of pressures */
+
+  return PetscAbsReal(from->width - to->width) * most;
+}
+
+static PetscBool HasJumped(const LamRVEState from, const LamRVEState to, const LamStepWork *step)
+{
+  return (PetscBool)(-step->defect > LAM_LEAST_LOSS + BetweenLaws(from, to) &&
+                     -step->defect > LOST * (to->spent - from->spent) &&
                      -step->defect > LOST_TURNOVER * step->turnover);
 }
 
 static PetscBool IsTooLong(LamRVE rve, const LamRVEState from, const LamRVEState to, const LamStepWork *step)
 {
-  return (PetscBool)(HasJumped(rve, from, to, step) || BreaksMuch(rve, from, to));
+  return (PetscBool)(HasJumped(from, to, step) || BreaksMuch(rve, from, to));
 }
 
 /* Where a step goes: a load, and under prescribed stress P with guesses of the free components of F. */
@@ -110,7 +119,7 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
 
     too_long = IsTooLong(rve, at, end, &step);
     if (!too_long || halvings == 0) {
-      if (HasJumped(rve, at, end, &step) && step.defect < STAYS * r->first) r->lost -= step.defect;
+      if (HasJumped(at, end, &step) && step.defect < STAYS * r->first) r->lost -= step.defect;
       end->work = at->work + step.work;
       PetscCall(LamRVEStateCopy(end, at));
     }

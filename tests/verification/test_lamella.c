@@ -1,5 +1,6 @@
 /* Tissue whose lamella breaks for good: tangent, ledger of energies, limits and history. */
 #include "support/lamella_tissue.h"
+#include "support/random_lamella.h"
 #include "support/rve_fixture.h"
 #include "solve.h"
 
@@ -112,6 +113,28 @@ TEST(LedgerClosesAcrossAJump)
 
   assert_true(fine < coarse / 8.0);
   assert_true(fine < 1e-3 * turnover);
+}
+
+/* Pressed tissue whose cells snap to one side when the lamella has let go, out of reach of the exact law of contact. */
+TEST(LedgerClosesAcrossAJumpToTheOtherLawOfContact)
+{
+  const RandomLamella sample = DrawLamella(1, 33, 3.0);
+  LamResponse before;
+  double work = 0.0;
+  Specimen s;
+
+  CHECK(SpecimenCreate(&sample.micro, &s));
+  for (int k = 0; k <= 20; k++) {
+    const LamLoad load = LamellaProgramLoad(&sample, 0.03 * k);
+
+    before = s.response;
+    CHECK(SpecimenFollow(&s, &load, 1, &work));
+  }
+  assert_true(before.contact_width == 0.0 && s.response.contact_width > 0.0);
+  assert_true(s.response.jumped);
+  assert_near(s.response.work, s.response.stored + s.response.dissipated + s.response.released,
+              0.1 * s.response.released);
+  CHECK(SpecimenDestroy(&s));
 }
 
 TEST(EnergyOfATornCellIsWorkAndLoss)
