@@ -108,11 +108,14 @@ typedef struct {
   /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated;
      work and released are known if all states so far were solved with LAM_WANT_STRESS */
   PetscReal stored;     /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
-  PetscReal dissipated; /* spent in the lamella */
+  PetscReal dissipated; /* spent in the lamella and in walls that tear, ... */
+  PetscReal dissipated_walls; /* ... and in these alone */
   PetscReal work;       /* of stress, turgor and suction, by the trapezoidal rule: stored + dissipated + released */
   PetscReal released;   /* lost in jumps, i.e. to sound and heat */
   PetscReal broken_fraction; /* share of the lamella's fracture energy that is spent */
   PetscReal broken_by_face[3];
+  PetscReal burst_fraction; /* share of the cells that have burst: a wall is torn through, and turgor is lost */
+  PetscReal juice;          /* volume per V0 of their lumens, when they burst */
   PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */
   PetscReal energy_released;    /* Psi that the jump has lost; NaN: no jump */
   PetscBool indicators_trusted; /* of a response from a database: quantities that are not derivatives of Psi vary little

@@ -76,6 +76,7 @@ typedef struct {
   PetscReal clearance; /* gap between facing walls at rest, in apothems: each cell is smaller than its lattice site by
                           half of it */
   LamLamella lamella;  /* of law `lamella` */
+  LamTearing tearing;  /* of the walls, with law `lamella` */
   LamSharpness sharpness;  /* law of contact */
   PetscReal contact_width; /* of the smooth law, in apothems; 0: LAM_USUAL_WIDTH */
   PetscInt along, through; /* elements per face and through one wall; 0: chosen by the planner */
@@ -83,6 +84,11 @@ typedef struct {
                         planner */
 } LamMicrostructure;
 
+/* Whether walls can tear. */
+static inline PetscBool LamWallsTear(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->tearing.strength > 0.0);
+}
 /* Deep copy, which owns its cells; free it with LamMicrostructureDestroy. A scene destroys its own microstructure. */
 LAM_EXPORT PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostructure *copy);
 LAM_EXPORT PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro);
@@ -121,6 +127,11 @@ LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
 /* The stiffness where none is given: the lamella costs 0.08 % of the tissue's stiffness, or less where 50 times the least
    stiffness is more; at most the stiffest. */
 LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
+/* The same of the cuts across walls that tear, of which a face has two, one in the middle and half of those at its ends:
+   least stiffness strength^2/(2 energy), and the one where none is given, at the same price of the stiffness of walls
+   along themselves, E'. */
+LAM_EXPORT PetscReal LamTearingLeastStiffness(const LamTearing *tearing);
+LAM_EXPORT PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro);
 /* What the compliance of the lamella costs of the tissue's stiffness, as a share of it: the change of the tangent at
    rest against that of bonded tissue, Frobenius norms. */
 LAM_EXPORT PetscReal LamLamellaCompliance(const LamMicrostructure *micro);

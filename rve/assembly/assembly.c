@@ -121,6 +121,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     }
     Scatter(rve, e, &element, residual);
   }
+  if (has_turgor) LamAssembleChords(rve, load, y, residual);
   LamSealAssemble(rve, load, y, residual);
   if (suction != 0.0) {
     LamGapAreaAddGradient(&rve->contact->gaps, load->F, y, suction, residual);

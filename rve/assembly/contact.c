@@ -40,14 +40,14 @@ static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamC
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
     for (PetscInt k = 0; k < 3; ++k) {
       const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image), last = 2 * mesh->along;
+      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
 
       if (other < 0) continue;
       contact->faces[f] = NewFace(micro, mesh, cell, k, contact->hats);
       for (PetscInt i = 0; i < contact->chain; ++i) {
         const PetscBool slave = (PetscBool)(i < contact->hats);
-        const PetscInt node = slave ? LamMeshOuterNode(mesh, cell, last * k + i)
-                                    : LamMeshOuterNode(mesh, other, last * (k + 3) + i - contact->hats);
+        const PetscInt node = slave ? LamMeshOuterNode(mesh, cell, k, i)
+                                    : LamMeshOuterNode(mesh, other, k + LAM_FACES / 2, i - contact->hats);
 
         contact->classes[f * contact->chain + i] = mesh->node_class[node];
         for (PetscInt d = 0; d < 2; ++d)

@@ -17,10 +17,81 @@ static LamCohesive LawAt(const LamLamella *lamella, PetscReal strength, PetscRea
                        .mixing = lamella->mixing};
 }
 
+/* Places node k of an edge; image: NULL, or the shift of the image that it is of. */
+static void PlaceNode(const LamMesh *mesh, PetscInt node, const PetscReal *image, PetscInt k, LamEdgeNodes *edge)
+{
+  edge->class[k] = mesh->node_class[node];
+  for (PetscInt d = 0; d < 2; ++d) edge->shift[k][d] = mesh->shift[2 * node + d] + (image ? image[d] : 0.0);
+}
+
+static void SetPoint(LamLayer *layer, PetscInt point, PetscReal length, const LamCohesive *law, PetscReal V0,
+                     PetscReal *toughness)
+{
+  layer->bond[point].law = *law;
+  layer->weight[point] = LamEdgeWeight(point % LAM_EDGE_POINTS) * length;
+  *toughness += layer->weight[point] * LamEnvelopeOf(law, 0.0).energy / V0;
+}
+
+/* Edge e of a face: its nodes counter-clockwise around the slave. */
+static void SetFaceEdge(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact, PetscInt edge,
+                        LamLayer *layer)
+{
+  const LamContactFace *of = &contact->faces[edge / mesh->along];
+  const PetscInt e = edge % mesh->along;
+  const PetscReal face = LamFaceLength(mesh);
+  LamEdgeNodes *nodes = &layer->nodes[edge];
+  PetscReal strength, energy;
+
+  nodes->length = contact->J0[e];
+  for (PetscInt k = 0; k < 3; ++k) {
+    const PetscInt column[2] = {of->face * mesh->along + e, (of->face + LAM_FACES / 2 + 1) * mesh->along - 1 - e};
+
+    PlaceNode(mesh, LamMeshNode(mesh, of->cell, LamMeshRing(mesh, column[0], k), mesh->radial_nodes - 1), NULL, k,
+              nodes);
+    PlaceNode(mesh, LamMeshNode(mesh, of->other, LamMeshRing(mesh, column[1], 2 - k), mesh->radial_nodes - 1),
+              of->shift, 3 + k, nodes);
+  }
+  (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
+  if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
+    const PetscReal at = face * LamMeshShare(mesh, (PetscReal)e + LamEdgePlace(q));
+    const PetscBool junction = (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length);
+    const LamCohesive law = LawAt(&micro->lamella, strength, energy, junction);
+
+    SetPoint(layer, LAM_EDGE_POINTS * edge + q, nodes->length, &law, mesh->V0, &layer->toughness[0]);
+  }
+}
+
+/* Edge m of a cut, from the lumen: the slave is the part before the cut, whose outside is to the right inwards. */
+static void SetCutEdge(const LamTearing *tearing, const LamMesh *mesh, PetscInt cut, PetscInt m, LamLayer *layer)
+{
+  const LamCohesive law = {.softening = LAM_SOFTENING_BILINEAR,
+                           .stiffness = tearing->stiffness,
+                           .strength = tearing->strength,
+                           .beta = 1.0,
+                           .energy = {tearing->energy, tearing->energy},
+                           .mixing = 1.0};
+  const PetscInt first = layer->between + LAM_EDGE_POINTS * (cut * mesh->through + m), ends[2] = {2 * m + 2, 2 * m};
+  LamEdgeNodes *nodes = &layer->nodes[EdgeOf(first)];
+  PetscInt side[3][2];
+
+  for (PetscInt k = 0; k < 3; ++k) {
+    LamMeshCut(mesh, cut, ends[0] - k, side[k]);
+    for (PetscInt s = 0; s < 2; ++s) PlaceNode(mesh, side[k][s], NULL, 3 * s + k, nodes);
+  }
+  nodes->length = PetscSqrtReal(PetscSqr(mesh->X[2 * side[0][0]] - mesh->X[2 * side[2][0]]) +
+                                PetscSqr(mesh->X[2 * side[0][0] + 1] - mesh->X[2 * side[2][0] + 1]));
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
+    SetPoint(layer, first + q, nodes->length, &law, mesh->V0, &layer->toughness[1]);
+    layer->bond[first + q].closes = PETSC_TRUE;
+  }
+}
+
 PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact,
                               LamLayer **out)
 {
-  const PetscReal face = LamFaceLength(mesh);
+  const PetscInt faces = contact->face_count * mesh->along, cuts = mesh->cell_count * mesh->cuts;
+  const PetscInt edges = faces + cuts * mesh->through;
   LamLayer *layer;
 
   PetscFunctionBeginUser;
@@ -28,23 +99,18 @@ PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mes
              PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "stiffness, strength and energy of the lamella must be positive, got %g, %g and %g",
              (double)micro->lamella.stiffness, (double)micro->lamella.strength, (double)micro->lamella.energy);
+  PetscCheck(cuts == 0 || (micro->tearing.stiffness > 0.0 && micro->tearing.energy > 0.0), PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT, "stiffness and energy of walls that tear must be positive, got %g and %g",
+             (double)micro->tearing.stiffness, (double)micro->tearing.energy);
   PetscCall(PetscNew(&layer));
-  layer->count = contact->face_count * mesh->along * LAM_EDGE_POINTS;
-  PetscCall(
-      PetscMalloc3(layer->count, &layer->weight, layer->count, &layer->bond, EdgeOf(layer->count), &layer->first));
-  for (PetscInt p = 0; p < layer->count; ++p) {
-    const PetscInt e = EdgeOf(p) % mesh->along;
-    const LamContactFace *of = &contact->faces[EdgeOf(p) / mesh->along];
-    const PetscReal at = face * LamMeshShare(mesh, (PetscReal)e + LamEdgePlace(p % LAM_EDGE_POINTS));
-    PetscReal strength, energy;
-
-    (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
-    if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
-    layer->bond[p].law =
-        LawAt(&micro->lamella, strength, energy, (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length));
-    layer->weight[p] = LamEdgeWeight(p % LAM_EDGE_POINTS) * contact->J0[e];
-    layer->toughness += layer->weight[p] * LamEnvelopeOf(&layer->bond[p].law, 0.0).energy / mesh->V0;
-  }
+  layer->between = LAM_EDGE_POINTS * faces;
+  layer->count = LAM_EDGE_POINTS * edges;
+  PetscCall(PetscMalloc2(layer->count, &layer->weight, edges, &layer->first));
+  PetscCall(PetscCalloc4(layer->count, &layer->bond, edges, &layer->nodes, cuts, &layer->torn,
+                         cuts ? mesh->cell_count : 0, &layer->burst));
+  for (PetscInt edge = 0; edge < faces; ++edge) SetFaceEdge(micro, mesh, contact, edge, layer);
+  for (PetscInt k = 0; k < cuts * mesh->through; ++k)
+    SetCutEdge(&micro->tearing, mesh, k / mesh->through, k % mesh->through, layer);
   *out = layer;
   PetscFunctionReturn(0);
 }
@@ -53,56 +119,36 @@ PetscErrorCode LamLayerDestroy(LamLayer **layer)
 {
   PetscFunctionBeginUser;
   if (!*layer) PetscFunctionReturn(0);
-  PetscCall(PetscFree3((*layer)->weight, (*layer)->bond, (*layer)->first));
+  PetscCall(PetscFree2((*layer)->weight, (*layer)->first));
+  PetscCall(PetscFree4((*layer)->bond, (*layer)->nodes, (*layer)->torn, (*layer)->burst));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(0);
-}
-
-/* Place in its face's chains of node k of an edge. */
-static PetscInt ChainPlace(const LamContact *contact, PetscInt e, PetscInt k)
-{
-  return k < 3 ? 2 * e + k : contact->chain - 1 - (2 * e + k - 3);
-}
-
-static void SetBlock(LamRVE rve, PetscInt edge, LamEdgeBlock *block)
-{
-  const LamContact *contact = rve->contact;
-  const PetscInt f = edge / rve->mesh.along;
-
-  block->edge = edge;
-  for (PetscInt k = 0; k < LAM_EDGE_NODES; ++k) {
-    const PetscInt at = f * contact->chain + ChainPlace(contact, edge % rve->mesh.along, k);
-
-    block->class[k] = contact->classes[at];
-    for (PetscInt d = 0; d < 2; ++d) block->shift[k][d] = contact->shift[2 * at + d];
-  }
 }
 
 void LamLayerSetMatrix(LamRVE rve)
 {
   for (PetscInt edge = 0; edge < EdgeOf(rve->layer->count); ++edge) {
+    const LamEdgeNodes *nodes = &rve->layer->nodes[edge];
     PetscInt pair = 0;
-    LamEdgeBlock block;
 
-    SetBlock(rve, edge, &block);
     for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
       for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++pair)
-        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, block.class[i], block.class[j]);
+        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes->class[j]);
   }
 }
 
 /* Displacements of an edge's nodes, without the cancellation of positions, and their reference positions. */
-static void GatherEdge(LamRVE rve, const PetscReal F[9], const PetscReal y[], const LamEdgeBlock *block,
+static void GatherEdge(LamRVE rve, const PetscReal F[9], const PetscReal y[], const LamEdgeNodes *nodes,
                        PetscReal u[LAM_EDGE_NODES][2], PetscReal X[LAM_EDGE_NODES][2])
 {
   const PetscReal H[4] = {F[0] - 1.0, F[1], F[3], F[4] - 1.0};
 
   for (PetscInt k = 0; k < LAM_EDGE_NODES; ++k)
     for (PetscInt d = 0; d < 2; ++d) {
-      const PetscInt at = 2 * block->class[k] + d;
+      const PetscInt at = 2 * nodes->class[k] + d;
 
-      X[k][d] = rve->mesh.class_X[at] + block->shift[k][d];
-      u[k][d] = (y[at] - rve->mesh.class_X[at]) + (H[2 * d] * block->shift[k][0] + H[2 * d + 1] * block->shift[k][1]);
+      X[k][d] = rve->mesh.class_X[at] + nodes->shift[k][d];
+      u[k][d] = (y[at] - rve->mesh.class_X[at]) + (H[2 * d] * nodes->shift[k][0] + H[2 * d + 1] * nodes->shift[k][1]);
     }
 }
 
@@ -113,12 +159,11 @@ void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdg
   for (PetscInt edge = 0; edge < EdgeOf(layer->count); ++edge) {
     const PetscInt first = LAM_EDGE_POINTS * edge;
     PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
-    LamEdgeBlock block;
+    LamEdgeBlock block = {.edge = edge, .nodes = &layer->nodes[edge]};
 
-    SetBlock(rve, edge, &block);
-    GatherEdge(rve, F, y, &block, u, X);
-    LamEdgeEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, &layer->bond[first],
-                    rve->contact->J0[edge % rve->mesh.along], layer->secant, &block.sum);
+    GatherEdge(rve, F, y, block.nodes, u, X);
+    LamEdgeEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, &layer->bond[first], block.nodes->length,
+                    layer->secant, &block.sum);
     visitor(ctx, &block);
   }
 }
@@ -126,17 +171,17 @@ void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdg
 void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamBondVisitor visitor, void *ctx)
 {
   const LamLayer *layer = rve->layer;
+  const PetscInt faces = EdgeOf(layer->between);
 
   for (PetscInt edge = 0; edge < EdgeOf(layer->count); ++edge) {
+    const PetscInt at = edge < faces ? edge % rve->mesh.along : (edge - faces) % rve->mesh.through;
     PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
-    LamEdgeBlock block;
 
-    SetBlock(rve, edge, &block);
-    GatherEdge(rve, F, y, &block, u, X);
+    GatherEdge(rve, F, y, &layer->nodes[edge], u, X);
     for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
       LamBondPoint point = {.point = LAM_EDGE_POINTS * edge + q,
-                            .face = edge / rve->mesh.along,
-                            .at = (PetscReal)(edge % rve->mesh.along) + LamEdgePlace(q)};
+                            .face = edge < faces ? edge / rve->mesh.along : -1,
+                            .at = (PetscReal)at + LamEdgePlace(q)};
 
       LamEdgePointEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, q, &layer->bond[point.point],
                            &point.jump, &point.step);
@@ -148,10 +193,8 @@ void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
 void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt edge, PetscReal s, LamJump *jump)
 {
   PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
-  LamEdgeBlock block;
 
-  SetBlock(rve, edge, &block);
-  GatherEdge(rve, F, y, &block, u, X);
+  GatherEdge(rve, F, y, &rve->layer->nodes[edge], u, X);
   LamEdgeJump((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, s, rve->layer->bond[LAM_EDGE_POINTS * edge].law.beta,
               jump);
 }
@@ -187,13 +230,13 @@ static void AddEdge(void *ctx, const LamEdgeBlock *block)
 {
   Assembly *a = (Assembly *)ctx;
   LamLinear *linear = a->rve->linear;
-  const PetscInt *first = a->rve->layer->first[block->edge];
+  const PetscInt *first = a->rve->layer->first[block->edge], *class = block->nodes->class;
 
   a->energy += block->sum.energy;
-  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) a->residual[2 * block->class[i / 2] + i % 2] += block->sum.f[i];
+  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) a->residual[2 * class[i / 2] + i % 2] += block->sum.f[i];
   for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
     for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++first) {
-      const PetscInt one = block->class[i], other = block->class[j];
+      const PetscInt one = class[i], other = class[j];
       PetscInt entry[2][2];
 
       if (*first < 0) continue;
@@ -221,7 +264,7 @@ static void FindHeldHats(LamRVE rve)
   const PetscInt points = LAM_EDGE_POINTS * rve->mesh.along;
 
   for (PetscInt h = 0; h < contact->count; ++h) contact->held[h] = PETSC_TRUE;
-  for (PetscInt p = 0; p < layer->count; ++p) {
+  for (PetscInt p = 0; p < layer->between; ++p) {
     const PetscReal at = (PetscReal)(p % points / LAM_EDGE_POINTS) + LamEdgePlace(p % LAM_EDGE_POINTS);
     const PetscInt before = (PetscInt)(2.0 * at);
 
@@ -229,6 +272,22 @@ static void FindHeldHats(LamRVE rve)
     contact->held[p / points * contact->hats + before] = PETSC_FALSE;
     contact->held[p / points * contact->hats + before + 1] = PETSC_FALSE;
   }
+}
+
+/* Which cuts are broken through. */
+static void FindTorn(LamRVE rve)
+{
+  LamLayer *layer = rve->layer;
+  const PetscInt through = LAM_EDGE_POINTS * rve->mesh.through, cuts = rve->mesh.cell_count * rve->mesh.cuts;
+
+  for (PetscInt k = 0; k < cuts; ++k) {
+    const LamBond *bond = &layer->bond[layer->between + k * through];
+
+    layer->torn[k] = PETSC_TRUE;
+    for (PetscInt q = 0; q < through; ++q)
+      if (!LamBondIsBroken(&bond[q], bond[q].kappa)) layer->torn[k] = PETSC_FALSE;
+  }
+  if (cuts) LamWallsTearAt(&rve->smooth->walls, layer->torn);
 }
 
 void LamLayerTake(LamRVE rve, const LamRVEState state)
@@ -240,8 +299,11 @@ void LamLayerTake(LamRVE rve, const LamRVEState state)
   layer->spent = state->spent;
   layer->released = state->released;
   layer->work = state->work;
+  layer->juice = state->juice;
+  (void)PetscArraycpy(layer->burst, state->burst, state->cells);
   for (PetscInt p = 0; p < layer->count; ++p) LamBondTake(&state->history[p], &layer->bond[p]);
   FindHeldHats(rve);
+  FindTorn(rve);
 }
 
 typedef struct {
@@ -267,5 +329,7 @@ void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state)
   state->spent = rve->layer->spent;
   state->released = rve->layer->released;
   state->work = rve->layer->work;
+  state->juice = rve->layer->juice;
+  (void)PetscArraycpy(state->burst, rve->layer->burst, state->cells);
   LamLayerVisitPoints(rve, load->F, rve->y, KeepBond, &keeping);
 }

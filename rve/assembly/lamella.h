@@ -4,6 +4,10 @@
   Facing walls lie on each other at rest and have equal meshes: a point of the lamella joins the two points with the
   same reference place. An undamaged lamella resists compression, too; where it is damaged, compression is left to
   contact, which keeps all walls apart. So tissue that is not yet damaged is elastic, without contact to be found.
+
+  Walls that tear have the same law across their cuts (mesh.h), with edges through the wall. The sides of a cut keep each
+  other out, damaged or not, by the stiffness of the undamaged one. A cut is torn once all its points are broken at the
+  start of a step; a cell with one bursts (lamella_step.c).
 */
 #ifndef LAM_RVE_LAMELLA_H
 #define LAM_RVE_LAMELLA_H
@@ -11,30 +15,41 @@
 #include "cohesive_edge.h"
 #include "contact.h"
 
+/* Nodes of an edge: x = y_class + F shift. */
 typedef struct {
-  PetscInt count;                    /* points: those of edge e of face f begin at LAM_EDGE_POINTS (f along + e) */
+  PetscInt class[LAM_EDGE_NODES];
+  PetscReal shift[LAM_EDGE_NODES][2], length; /* of the edge at rest */
+} LamEdgeNodes;
+
+typedef struct {
+  PetscInt between;                  /* points between cells: those of edge e of face f begin at LAM_EDGE_POINTS (f
+                                        along + e) */
+  PetscInt count;                    /* and all; those of edge m from the lumen of cut k begin at between +
+                                        LAM_EDGE_POINTS (k through + m) */
+  LamEdgeNodes *nodes;               /* [edge] */
   LamBond *bond;                     /* [count] with the history at the start of the step */
   PetscReal *weight;                 /* [count] reference length */
   PetscBool secant;                  /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
-  PetscReal toughness;               /* energy of fracture in tension, per V0 */
-  PetscReal spent, released, work;   /* until the start of the step, as in the state */
+  PetscReal toughness[2];            /* energy of fracture in tension, of the lamella and of all cuts, per V0 */
+  PetscReal spent, released, work, juice; /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
+  PetscBool *torn;  /* [cell][LAM_CUTS] cuts broken through at the start of the step; NULL: walls do not tear */
+  PetscBool *burst; /* [cell] likewise */
 } LamLayer;
 
 /* Sums over the points of an edge. */
 typedef struct {
   PetscInt edge;
-  PetscInt class[LAM_EDGE_NODES];     /* of its nodes */
-  PetscReal shift[LAM_EDGE_NODES][2]; /* x = y_class + F shift */
+  const LamEdgeNodes *nodes;
   LamCohesiveSum sum;
 } LamEdgeBlock;
 typedef void (*LamEdgeVisitor)(void *ctx, const LamEdgeBlock *block);
 
 /* A point at some positions. */
 typedef struct {
-  PetscInt point, face;
-  PetscReal at; /* in edges from the start of its face */
+  PetscInt point, face; /* face -1: of a cut */
+  PetscReal at;         /* in edges from the start of its face or cut */
   LamJump jump;
   LamCohesiveStep step;
 } LamBondPoint;

@@ -44,6 +44,9 @@ struct LamRVEState_s {
   PetscInt points;
   LamBondHistory *history;            /* [points] */
   PetscReal spent, released, work;    /* energies per V0 so far: dissipated, lost in jumps, work of the loads */
+  PetscReal juice;                    /* volume per V0 of the lumens of burst cells, when they burst */
+  PetscInt cells;                     /* of tissue whose walls tear, else 0 */
+  PetscBool *burst;                   /* [cells] */
   PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
 };
 
@@ -119,9 +122,14 @@ static inline const LamWall *LamWallOf(LamRVE rve, PetscInt element)
 {
   return LamCellWall(&rve->micro, rve->mesh.cell_of[element]);
 }
+static inline PetscBool LamHasBurst(LamRVE rve, PetscInt cell)
+{
+  return (PetscBool)(rve->layer && rve->layer->burst && rve->layer->burst[cell]);
+}
 /* Turgor of a cell relative to that of the load. */
 static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
 {
+  if (LamHasBurst(rve, cell)) return 0.0;
   return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
 }
 
@@ -190,6 +198,8 @@ void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[]);
 void LamLumenAddGradient(LamRVE rve, const PetscReal y[], const PetscReal factor[], PetscReal gradient[]);
 /* Adds the potential -pressure area of an innermost element to its residual and tangent. */
 void LamAddPressure(const PetscReal x[LAM_ELEMENT_NODES][2], PetscReal pressure, LamElementResult *element);
+/* Adds that of the chords, which close lumens at cuts, to residual and linear.values. */
+void LamAssembleChords(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[]);
 /* -p V_lumen, or for sealed lumens the energy of their water; uses only the positions in y. */
 PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Sets the rows of the pressures in linear.values and, if lumens are sealed, in residual [length]. */

@@ -89,7 +89,8 @@ static void CloseBlock(Sum *sum)
 /* Dependence of a touching point and of the closest point on the nodes of the block. */
 static void WeighNodes(const LamWalls *walls, const LamTouching *touch, LamTouchWeights *weights)
 {
-  const PetscReal(*share)[LAM_SPAN_NODES] = walls->of[touch->at].share;
+  const PetscReal(*share)[LAM_SPAN_NODES] = LamWallsSpan(walls, touch->other, touch->at)->share;
+  const PetscReal *point = LamWallsSpan(walls, touch->loop, touch->span)->point[touch->point];
   LamSplineWeights spline;
 
   LamSplineWeightsAt(touch->gap.t, &spline);
@@ -100,7 +101,7 @@ static void WeighNodes(const LamWalls *walls, const LamTouching *touch, LamTouch
       N += spline.N[a] * share[a][i];
       dN += spline.dN[a] * share[a][i];
     }
-    weights->N[i] = walls->of[touch->span].point[touch->point][i];
+    weights->N[i] = point[i];
     weights->dN[i] = 0.0;
     weights->N[LAM_SPAN_NODES + i] = -N;
     weights->dN[LAM_SPAN_NODES + i] = dN;
@@ -188,7 +189,8 @@ static PetscErrorCode AddNear(LamRVE rve, PetscInt loop, PetscInt i, PetscInt ot
 static PetscErrorCode AddFacing(LamRVE rve)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt per_face = 2 * mesh->along, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
+  const PetscInt per_face = mesh->ring_nodes / LAM_FACES, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
+  const PetscInt last = per_face - (mesh->cuts ? 1 : 0); /* node of a face; in a ring that is whole it begins the next */
 
   PetscFunctionBeginUser;
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
@@ -199,8 +201,26 @@ static PetscErrorCode AddFacing(LamRVE rve)
       const PetscReal *image;
       const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
-      for (PetscInt i = -beyond; other >= 0 && i <= per_face + beyond; ++i)
-        PetscCall(AddNear(rve, 2 * cell, per_face * face + i, 2 * other, per_face * (face + 4) - i, SLIDING));
+      for (PetscInt i = -beyond; other >= 0 && i <= last + beyond; ++i)
+        PetscCall(AddNear(rve, 2 * cell, per_face * face + i, 2 * other, per_face * (face + 3) + last - i, SLIDING));
+    }
+  PetscFunctionReturn(0);
+}
+
+/* Couplings of both sides of the cuts. */
+static PetscErrorCode AddCuts(LamRVE rve)
+{
+  const LamMesh *mesh = &rve->mesh;
+
+  PetscFunctionBeginUser;
+  for (PetscInt cut = 0; cut < mesh->cell_count * mesh->cuts; ++cut)
+    for (PetscInt k = 0; k < 9 * mesh->through; ++k) {
+      const PetscInt m = k / 9;
+      PetscInt one[2], other[2];
+
+      LamMeshCut(mesh, cut, 2 * m + k % 3, one);
+      LamMeshCut(mesh, cut, 2 * m + k / 3 % 3, other);
+      PetscCall(Couple(rve->smooth, mesh->node_class[one[0]], mesh->node_class[other[1]]));
     }
   PetscFunctionReturn(0);
 }
@@ -235,6 +255,7 @@ PetscErrorCode LamSmoothCreate(LamRVE rve)
   PetscCall(PetscNew(&rve->smooth));
   PetscCall(LamWallsCreate(&rve->micro, &rve->mesh, &rve->smooth->walls));
   PetscCall(AddFacing(rve));
+  PetscCall(AddCuts(rve));
   rve->smooth->base_count = rve->smooth->count;
   PetscCall(CreateSystem(rve, &rve->systems[LAM_SYSTEM_BASE]));
   rve->smooth->width = LAM_USUAL_WIDTH;

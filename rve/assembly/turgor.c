@@ -10,6 +10,8 @@
   of the positions. Elimination of the pressures gives the energy of the water, V_w ((1 - v) p0 + K_w (1 - v)^2 / 2),
   which descent uses.
 
+  A cell that has burst has no pressure: its row is -p = 0.
+
   Each pressure adds one negative eigenvalue. For lumens that are not sealed its row is that of the unit matrix.
 */
 #include "edge_area.h"
@@ -26,6 +28,31 @@ static void GatherInner(LamRVE rve, const PetscReal y[], PetscInt e, PetscReal x
   LamGatherElement(rve, no_shift, y, e, x);
 }
 
+/* The chord that closes the lumen at a cut: positions and classes of its ends. */
+typedef struct {
+  PetscInt class[2];
+  PetscReal x[2][2];
+} Chord;
+
+static Chord ChordOf(LamRVE rve, const PetscReal y[], PetscInt cut)
+{
+  PetscInt side[2];
+  Chord chord;
+
+  LamMeshCut(&rve->mesh, cut, 0, side);
+  for (PetscInt s = 0; s < 2; ++s) {
+    chord.class[s] = rve->mesh.node_class[side[s]];
+    for (PetscInt d = 0; d < 2; ++d) chord.x[s][d] = y[2 * chord.class[s] + d];
+  }
+  return chord;
+}
+
+/* Derivative of the chord's area, 1/2 x_0 x x_1, with respect to component d of end s. */
+static PetscReal ChordGradient(const Chord *chord, PetscInt s, PetscInt d)
+{
+  return (s == d ? 0.5 : -0.5) * chord->x[1 - s][1 - d];
+}
+
 void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[])
 {
   const LamMesh *mesh = &rve->mesh;
@@ -36,6 +63,11 @@ void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[])
 
     GatherInner(rve, y, e, x);
     area[mesh->cell_of[e]] += LamEdgeArea(inner_edge, (const PetscReal(*)[2])x);
+  }
+  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+    const Chord chord = ChordOf(rve, y, k);
+
+    area[k / LAM_CUTS] += 0.5 * (chord.x[0][0] * chord.x[1][1] - chord.x[0][1] * chord.x[1][0]);
   }
 }
 
@@ -52,6 +84,32 @@ void LamLumenAddGradient(LamRVE rve, const PetscReal y[], const PetscReal factor
       for (PetscInt d = 0; d < 2; ++d)
         gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
             f[2 * inner_edge[k] + d];
+  }
+  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+    const Chord chord = ChordOf(rve, y, k);
+
+    for (PetscInt s = 0; s < 2; ++s)
+      for (PetscInt d = 0; d < 2; ++d)
+        gradient[2 * chord.class[s] + d] += factor[k / LAM_CUTS] * ChordGradient(&chord, s, d);
+  }
+}
+
+void LamAssembleChords(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal residual[])
+{
+  LamLinear *linear = rve->linear;
+
+  for (PetscInt k = 0; k < rve->mesh.cell_count * rve->mesh.cuts; ++k) {
+    const Chord chord = ChordOf(rve, y, k);
+    const PetscReal p = LamTurgor(rve, load, y, k / LAM_CUTS) * load->F[8];
+    const PetscInt one = chord.class[0], other = chord.class[1];
+    PetscInt entry[2][2];
+
+    for (PetscInt s = 0; s < 2; ++s)
+      for (PetscInt d = 0; d < 2; ++d) residual[2 * chord.class[s] + d] -= p * ChordGradient(&chord, s, d);
+    if (one == 0 || other == 0) continue;
+    LamLinearEntries(linear, one, other, LamLinearBlock(linear, one, other), entry);
+    linear->values[entry[0][1]] -= 0.5 * p;
+    linear->values[entry[1][0]] += 0.5 * p;
   }
 }
 
@@ -70,6 +128,7 @@ PetscReal LamTurgorEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) {
     const PetscReal p0 = load->turgor * LamTurgorFactor(rve, c), volume = load->F[8] * seal->area[c];
 
+    if (seal->closed && LamHasBurst(rve, c)) continue;
     if (seal->closed) {
       const PetscReal loss = 1.0 - volume / seal->water[c];
 
@@ -90,6 +149,7 @@ static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
   for (PetscInt e = 0; e < mesh->element_count; e += mesh->through) {
     PetscReal x[LAM_ELEMENT_NODES][2], f[LAM_ELEMENT_DOFS] = {0};
 
+    if (LamHasBurst(rve, mesh->cell_of[e])) continue;
     GatherInner(rve, y, e, x);
     LamAddEdgeArea(inner_edge, (const PetscReal(*)[2])x, factor, f, NULL);
     for (PetscInt k = 0; k < 3; ++k) {
@@ -98,6 +158,13 @@ static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
       for (PetscInt d = 0; d < 2 && class > 0; ++d)
         rve->linear->values[row[2 * (class - 1) + d + 1] - 1] += f[2 * inner_edge[k] + d];
     }
+  }
+  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+    const Chord chord = ChordOf(rve, y, k);
+
+    for (PetscInt s = 0; s < 2 && !LamHasBurst(rve, k / LAM_CUTS); ++s)
+      for (PetscInt d = 0; d < 2 && chord.class[s] > 0; ++d)
+        rve->linear->values[row[2 * (chord.class[s] - 1) + d + 1] - 1] += factor * ChordGradient(&chord, s, d);
   }
 }
 
@@ -116,10 +183,12 @@ void LamSealAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], Petsc
   LamLumenAreas(rve, y, seal->area);
   AddAreaRows(rve, y, -load->F[8]);
   for (PetscInt c = 0; c < rve->linear->lumens; ++c) {
-    const PetscReal over = y[rve->ndof + c] - load->turgor * LamTurgorFactor(rve, c);
+    const PetscBool burst = LamHasBurst(rve, c);
+    const PetscReal p = y[rve->ndof + c], over = p - load->turgor * LamTurgorFactor(rve, c);
 
-    residual[rve->ndof + c] = seal->water[c] * (1.0 - over / seal->bulk_modulus) - load->F[8] * seal->area[c];
-    rve->linear->values[rve->linear->row[first + c]] = -seal->water[c] / seal->bulk_modulus;
+    residual[rve->ndof + c] =
+        burst ? -p : seal->water[c] * (1.0 - over / seal->bulk_modulus) - load->F[8] * seal->area[c];
+    rve->linear->values[rve->linear->row[first + c]] = burst ? -1.0 : -seal->water[c] / seal->bulk_modulus;
   }
 }
 
@@ -130,8 +199,10 @@ void LamSealSetConsistent(LamRVE rve, const LamLoad *load, PetscReal y[])
   if (!seal->closed) return;
   LamLumenAreas(rve, y, seal->area);
   for (PetscInt c = 0; c < rve->linear->lumens; ++c)
-    y[rve->ndof + c] = load->turgor * LamTurgorFactor(rve, c) +
-                       seal->bulk_modulus * (1.0 - load->F[8] * seal->area[c] / seal->water[c]);
+    y[rve->ndof + c] = LamHasBurst(rve, c)
+                           ? 0.0
+                           : load->turgor * LamTurgorFactor(rve, c) +
+                                 seal->bulk_modulus * (1.0 - load->F[8] * seal->area[c] / seal->water[c]);
 }
 
 PetscReal LamSealError(LamRVE rve, const PetscReal residual[])

@@ -30,11 +30,6 @@ static void FindNeighbours(const LamMicrostructure *micro, LamMesh *mesh)
 
 #define ORIGIN -1 /* representative of nodes prescribed at F X */
 
-static PetscInt NodeNumber(const LamMesh *mesh, PetscInt cell, PetscInt around, PetscInt radial)
-{
-  return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + radial;
-}
-
 static void PlaceEnds(PetscReal grading, LamMesh *mesh)
 {
   for (PetscInt i = 0; i <= mesh->along; ++i) {
@@ -58,9 +53,9 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
 
     LamLatticeIndex(micro, cell, index);
 
-    for (PetscInt around = 0; around < mesh->ring_nodes; ++around) {
-      const PetscInt face = around / (2 * mesh->along);
-      const PetscReal u = LamMeshShare(mesh, 0.5 * (PetscReal)(around % (2 * mesh->along)));
+    for (PetscInt i = 0; i < 3 * LAM_FACES * mesh->along; ++i) {
+      const PetscInt column = i / 3, face = column / mesh->along;
+      const PetscReal u = LamMeshShare(mesh, (PetscReal)(column % mesh->along) + 0.5 * (PetscReal)(i % 3));
       PetscReal a[2], b[2];
 
       HexagonCorner(micro->orientation, face, a);
@@ -68,7 +63,7 @@ static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
       for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
         const PetscReal apothem =
             mesh->apothem - thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
-        PetscReal *X = &mesh->X[2 * NodeNumber(mesh, cell, around, r)];
+        PetscReal *X = &mesh->X[2 * LamMeshNode(mesh, cell, LamMeshRing(mesh, column, i % 3), r)];
 
         for (PetscInt d = 0; d < 2; ++d)
           X[d] =
@@ -93,7 +88,7 @@ static void ConnectElements(LamMesh *mesh)
           mesh->cell_of[e] = cell;
           for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
             mesh->elements[LAM_ELEMENT_NODES * e + a] =
-                NodeNumber(mesh, cell, 2 * (face * mesh->along + i) + offset[a][1], 2 * m + offset[a][0]);
+                LamMeshNode(mesh, cell, LamMeshRing(mesh, face * mesh->along + i, offset[a][1]), 2 * m + offset[a][0]);
         }
 }
 
@@ -104,8 +99,26 @@ static PetscInt FirstOf(const PetscInt tied[], PetscInt node)
   return node;
 }
 
-/* Puts coincident nodes of facing walls, also across the period, into one class. The representative is the lowest node
-   number. */
+/* Puts two nodes into one class. The representative is the lowest node number. */
+static void Tie(LamMesh *mesh, PetscInt one, PetscInt other)
+{
+  const PetscInt a = FirstOf(mesh->node_class, one), b = FirstOf(mesh->node_class, other);
+
+  mesh->node_class[PetscMax(a, b)] = PetscMin(a, b);
+}
+
+static void TieCuts(LamMesh *mesh)
+{
+  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k)
+    for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
+      PetscInt side[2];
+
+      LamMeshCut(mesh, k, r, side);
+      Tie(mesh, side[0], side[1]);
+    }
+}
+
+/* Ties coincident nodes of facing walls, also across the period. */
 static void TieOuterNodes(LamMesh *mesh)
 {
   const PetscInt last = 2 * mesh->along;
@@ -115,12 +128,9 @@ static void TieOuterNodes(LamMesh *mesh)
       const PetscReal *image;
       const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
-      for (PetscInt i = 0; other >= 0 && i <= last; ++i) {
-        const PetscInt a = FirstOf(mesh->node_class, LamMeshOuterNode(mesh, cell, last * face + i));
-        const PetscInt b = FirstOf(mesh->node_class, LamMeshOuterNode(mesh, other, last * (face + 4) - i));
-
-        mesh->node_class[PetscMax(a, b)] = PetscMin(a, b);
-      }
+      for (PetscInt i = 0; other >= 0 && i <= last; ++i)
+        Tie(mesh, LamMeshOuterNode(mesh, cell, face, i),
+            LamMeshOuterNode(mesh, other, (face + LAM_FACES / 2) % LAM_FACES, last - i));
     }
   for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = FirstOf(mesh->node_class, i);
 }
@@ -129,8 +139,11 @@ static void TieOuterNodes(LamMesh *mesh)
 static void HoldNodes(LamMesh *mesh)
 {
   for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k)
-    for (PetscInt i = 0; mesh->held[k] && i <= 2 * mesh->along; ++i)
-      mesh->node_class[LamMeshOuterNode(mesh, k / LAM_FACES, 2 * mesh->along * (k % LAM_FACES) + i)] = ORIGIN;
+    for (PetscInt i = 0; mesh->held[k] && i < 3 * mesh->along; ++i) {
+      const PetscInt ring = LamMeshRing(mesh, k % LAM_FACES * mesh->along + i / 3, i % 3);
+
+      mesh->node_class[LamMeshNode(mesh, k / LAM_FACES, ring, mesh->radial_nodes - 1)] = ORIGIN;
+    }
 }
 
 /* Numbers the classes in node order, after the origin if there is one, and sets the shifts. */
@@ -175,6 +188,9 @@ static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
   PetscCheck(micro->along > 0 && micro->through > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "elements along a face and through a wall must be chosen, got %d and %d", (int)micro->along,
              (int)micro->through);
+  PetscCheck(!LamWallsTear(micro) || micro->along % 2 == 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "walls that tear are cut in the middle of faces, too: elements along a face must be even, got %d",
+             (int)micro->along);
   PetscCheck(micro->grading >= 0.0 && micro->grading < 1.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "grading of the mesh is %g; it must lie between 0 and 1", (double)micro->grading);
   PetscCheck(micro->cells[0] > 0 && micro->cells[1] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
@@ -196,7 +212,8 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   mesh->along = micro->along;
   mesh->through = micro->through;
   mesh->cell_count = micro->cells[0] * micro->cells[1];
-  mesh->ring_nodes = 2 * LAM_FACES * micro->along;
+  mesh->cuts = LamWallsTear(micro) ? LAM_CUTS : 0;
+  mesh->ring_nodes = 2 * LAM_FACES * micro->along + mesh->cuts;
   mesh->radial_nodes = 2 * micro->through + 1;
   mesh->node_count = mesh->cell_count * mesh->ring_nodes * mesh->radial_nodes;
   mesh->element_count = mesh->cell_count * LAM_FACES * micro->along * micro->through;
@@ -214,7 +231,10 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
   ConnectElements(mesh);
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     mesh->node_class[i] = i; /* the representative node until NumberClasses */
-  if (micro->interface == LAM_INTERFACE_BONDED) TieOuterNodes(mesh);
+  if (micro->interface == LAM_INTERFACE_BONDED) {
+    TieCuts(mesh);
+    TieOuterNodes(mesh);
+  }
   HoldNodes(mesh);
   PetscCall(NumberClasses(micro->is_patch, mesh));
   PetscFunctionReturn(0);
@@ -232,7 +252,7 @@ PetscErrorCode LamMeshDestroy(LamMesh *mesh)
 
 void LamMeshCentre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2])
 {
-  const PetscInt a = LamMeshOuterNode(mesh, cell, 0), b = LamMeshOuterNode(mesh, cell, mesh->ring_nodes / 2);
+  const PetscInt a = LamMeshOuterNode(mesh, cell, 0, 0), b = LamMeshOuterNode(mesh, cell, LAM_FACES / 2, 0);
 
   for (PetscInt d = 0; d < 2; ++d) centre[d] = 0.5 * (mesh->X[2 * a + d] + mesh->X[2 * b + d]);
 }

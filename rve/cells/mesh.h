@@ -16,6 +16,10 @@
   affine sides all outer walls without a neighbour) belong to class 0, the origin: x_node = F X_node. F thus enters a
   patch through shifts, as it does a period, and P is the mean of the boundary forces.
 
+  Walls that tear (LamTearing) can be cut at both ends and in the middle of each face. A cut runs along the nodes through
+  the wall, which are there twice: the ring consists of LAM_CUTS parts, one after another, with nodes of their own. Cut
+  k lies between parts k - 1 and k. Bonded cells are whole: both nodes are in one class.
+
   Class 0 is prescribed, y = F X. This removes translations; in a patch it prescribes the boundary.
 */
 #ifndef LAM_RVE_MESH_H
@@ -25,10 +29,12 @@
 #include <lamella/lattice.h>
 
 #define LAM_ELEMENT_NODES 9
+#define LAM_CUTS (2 * LAM_FACES) /* places of cuts in the ring of a cell */
 
 typedef struct {
   PetscInt along, through, cell_count;
-  PetscInt ring_nodes;   /* nodes around one ring: 12 along */
+  PetscInt cuts;         /* of a ring: LAM_CUTS, or 0 */
+  PetscInt ring_nodes;   /* nodes around one ring: 12 along + cuts */
   PetscInt radial_nodes; /* nodes through the wall: 2 through + 1 */
   PetscInt node_count, element_count, class_count;
   PetscReal *ends;        /* [along + 1] element ends along a face, as fractions of its length, 0 to 1 */
@@ -94,10 +100,32 @@ static inline PetscInt LamMeshElement(const LamMesh *mesh, PetscInt cell, PetscI
 {
   return ((cell * LAM_FACES + face) * mesh->along + i) * mesh->through + m;
 }
-/* Node `around` of the outer loop of a cell, counter-clockwise; face k starts at 2 along k. */
-static inline PetscInt LamMeshOuterNode(const LamMesh *mesh, PetscInt cell, PetscInt around)
+/* Node k = 0, 1, 2 of an element column, 0 to 6 along - 1 counter-clockwise, as a number around the ring. */
+static inline PetscInt LamMeshRing(const LamMesh *mesh, PetscInt column, PetscInt k)
 {
-  return (cell * mesh->ring_nodes + around % mesh->ring_nodes) * mesh->radial_nodes + mesh->radial_nodes - 1;
+  const PetscInt at = 2 * column + k;
+
+  return mesh->cuts ? at + column / (mesh->along / 2) : at % mesh->ring_nodes;
+}
+static inline PetscInt LamMeshNode(const LamMesh *mesh, PetscInt cell, PetscInt ring, PetscInt radial)
+{
+  return (cell * mesh->ring_nodes + ring) * mesh->radial_nodes + radial;
+}
+/* Node i = 0 to 2 along of a face of the outer loop of a cell, counter-clockwise; in the middle of a face that can be
+   cut, that of the second half. */
+static inline PetscInt LamMeshOuterNode(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i)
+{
+  const PetscInt e = PetscMin(i / 2, mesh->along - 1);
+
+  return LamMeshNode(mesh, cell, LamMeshRing(mesh, face * mesh->along + e, i - 2 * e), mesh->radial_nodes - 1);
+}
+/* Nodes on both sides of a cut, numbered over all cells: the end of the part before it, the start of that behind it. */
+static inline void LamMeshCut(const LamMesh *mesh, PetscInt cut, PetscInt radial, PetscInt side[2])
+{
+  const PetscInt cell = cut / LAM_CUTS, start = cut % LAM_CUTS * (mesh->along + 1);
+
+  side[0] = LamMeshNode(mesh, cell, (start + mesh->ring_nodes - 1) % mesh->ring_nodes, radial);
+  side[1] = LamMeshNode(mesh, cell, start, radial);
 }
 /* Position of an image of a class: x = y_class + F S. */
 static inline void LamImagePosition(const PetscReal F[9], const PetscReal y[], PetscInt class, const PetscReal S[2],

@@ -21,7 +21,7 @@ void LamBondTake(const LamBondHistory *history, LamBond *bond)
   bond->before = *history;
   bond->now = LamEnvelopeOf(&bond->law, history->mode);
   bond->kappa = LamEnvelopeReach(&bond->now, history->integrity);
-  bond->pressing = LamBondIsUndamaged(bond) ? bond->law.stiffness : 0.0;
+  bond->pressing = bond->closes || LamBondIsUndamaged(bond) ? bond->law.stiffness : 0.0;
 }
 
 LamBondHistory LamBondKeep(const LamBond *bond, const LamJump *jump, const LamCohesiveStep *step)

@@ -8,6 +8,7 @@
 #ifndef LAM_RVE_COHESIVE_EDGE_H
 #define LAM_RVE_COHESIVE_EDGE_H
 
+#include <lamella/response.h>
 #include "cohesive.h"
 
 #define LAM_EDGE_POINTS 5 /* Gauss points of an edge (docs/theory/lamella.md, Points) */
@@ -32,7 +33,8 @@ typedef struct {
   LamBondHistory before; /* at the start of the step, with ... */
   LamEnvelope now;       /* ... its envelope, ... */
   PetscReal kappa;       /* ... its kappa, ... */
-  PetscReal pressing;    /* ... and its stiffness in compression */
+  PetscReal pressing;    /* ... and its stiffness in compression, ... */
+  PetscBool closes;      /* ... which damage leaves */
 } LamBond;
 /* Begins a step. */
 void LamBondTake(const LamBondHistory *history, LamBond *bond);
@@ -46,6 +48,12 @@ static inline PetscReal LamBondSpent(const LamBond *bond, const LamCohesiveStep 
 static inline PetscBool LamBondIsUndamaged(const LamBond *bond)
 {
   return (PetscBool)(bond->before.integrity >= 1.0 && bond->now.strength > 0.0);
+}
+
+/* Whether so much is spent at `kappa` that the point counts as broken. */
+static inline PetscBool LamBondIsBroken(const LamBond *bond, PetscReal kappa)
+{
+  return (PetscBool)(LamEnvelopeSpent(&bond->now, kappa) >= LAM_BROKEN * bond->now.energy);
 }
 
 /* Traction, nominal, normal to the middle between the walls and along it, for a secant stiffness omega k. */

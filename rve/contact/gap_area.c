@@ -36,11 +36,10 @@ static void AddPair(const LamMesh *mesh, Corner a, Corner b, PetscReal c, PetscR
 static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image, PetscReal cohesion,
                       LamGapArea *area)
 {
-  const PetscInt last = 2 * mesh->along;
   Corner node[3] = {{0, image}, {0, image}, {0, image}};
 
   for (PetscInt e = 0; e < mesh->along; ++e) {
-    for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, cell, last * face + 2 * e + i);
+    for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, cell, face, 2 * e + i);
     for (PetscInt i = 0; i < 3; ++i)
       for (PetscInt j = i + 1; j < 3; ++j) AddPair(mesh, node[i], node[j], -0.5 * lam_edge_area[i][j], cohesion, area);
   }
@@ -49,7 +48,7 @@ static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const P
 
 static Corner StartOf(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image)
 {
-  return (Corner){LamMeshOuterNode(mesh, cell, 2 * mesh->along * face), image};
+  return (Corner){LamMeshOuterNode(mesh, cell, face, 0), image};
 }
 
 /* Both walls of a face, clockwise around the gap: hence the minus signs. */

@@ -9,25 +9,36 @@ static void ListNodes(const LamMesh *mesh, LamWalls *walls)
 {
   for (PetscInt loop = 0; loop < walls->loops; ++loop)
     for (PetscInt i = 0; i < walls->nodes; ++i) {
-      const PetscInt cell = loop / 2, back = (walls->nodes - i) % walls->nodes;
+      /* backwards from a corner, or from a cut, whose nodes are there twice */
+      const PetscInt cell = loop / 2, back = (2 * walls->nodes - i - (mesh->cuts ? 1 : 0)) % walls->nodes;
 
       walls->node[loop * walls->nodes + i] =
-          loop % 2 ? (cell * mesh->ring_nodes + back) * mesh->radial_nodes : LamMeshOuterNode(mesh, cell, i);
+          loop % 2 ? LamMeshNode(mesh, cell, back, 0) : LamMeshNode(mesh, cell, i, mesh->radial_nodes - 1);
     }
+}
+
+/* Node in the loop of control point i, and its place in its part: cuts have both nodes of a pair, corners one. */
+static PetscInt NodeOf(const LamWalls *walls, PetscInt i, PetscInt *at)
+{
+  const PetscInt part = LamWallsPart(walls, (i + walls->spans) % walls->spans, at);
+
+  return (part * (walls->per_part - (walls->mesh->cuts ? 0 : 1)) + *at) % walls->nodes;
 }
 
 /* Share of the nodes 0..4 of a span in control point i. */
 static void ShareControl(const LamWalls *walls, PetscInt i, PetscInt first, PetscReal share[LAM_SPAN_NODES])
 {
-  PetscInt half, node;
-  const PetscInt face = LamWallsFace(walls, (i + walls->spans) % walls->spans, &half), last = 2 * walls->mesh->along;
+  const PetscInt last = walls->per_part - 1;
+  PetscInt at;
+  const PetscInt node = (NodeOf(walls, i, &at) - first + walls->nodes) % walls->nodes;
 
-  node = (last * face + half - first + walls->nodes) % walls->nodes;
   (void)PetscArrayzero(share, LAM_SPAN_NODES);
-  if (half == 0 || half == last) { /* at a corner */
+  if (at == 0 || at == last) { /* at a corner or cut */
     share[node] = 1.0 - walls->bevel;
-    share[half == 0 ? node + 1 : node - 1] = walls->bevel;
-  } else if (half % 2) {
+    share[at == 0 ? node + 1 : node - 1] = walls->bevel;
+  } else if (walls->mesh->cuts && (at == 1 || at == last - 1)) {
+    share[node] = 1.0;
+  } else if (at % 2) {
     share[node] = 4.0 / 3.0;
     share[node - 1] = share[node + 1] = -1.0 / 6.0;
   } else {
@@ -35,20 +46,28 @@ static void ShareControl(const LamWalls *walls, PetscInt i, PetscInt first, Pets
   }
 }
 
+/* ended: control points stay in the part of the span. */
+static void ShareSpan(const LamWalls *walls, PetscInt span, PetscBool ended, LamSpanNodes *of)
+{
+  PetscInt at;
+  const PetscInt start = NodeOf(walls, span, &at), last = walls->per_part - 1;
+
+  of->first = (start - 2 + at % 2 + walls->nodes) % walls->nodes;
+  (void)PetscMemzero(of->point, sizeof(of->point));
+  for (PetscInt a = 0; a < LAM_SPAN; ++a) {
+    const PetscInt place = at + a - 1, inside = ended ? PetscMax(0, PetscMin(last, place)) : place;
+
+    ShareControl(walls, span + inside - at, of->first, of->share[a]);
+    for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
+      for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) of->point[q][i] += walls->at[q].N[a] * of->share[a][i];
+  }
+}
+
 static void ShareNodes(LamWalls *walls)
 {
   for (PetscInt span = 0; span < walls->spans; ++span) {
-    LamSpanNodes *of = &walls->of[span];
-    PetscInt half, start = LamWallsFace(walls, span, &half);
-
-    start = 2 * walls->mesh->along * start + half;
-    of->first = (start - 2 + start % 2 + walls->nodes) % walls->nodes;
-    (void)PetscMemzero(of->point, sizeof(of->point));
-    for (PetscInt a = 0; a < LAM_SPAN; ++a) {
-      ShareControl(walls, span + a - 1, of->first, of->share[a]);
-      for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
-        for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i) of->point[q][i] += walls->at[q].N[a] * of->share[a][i];
-    }
+    ShareSpan(walls, span, PETSC_FALSE, &walls->of[span]);
+    ShareSpan(walls, span, PETSC_TRUE, &walls->ended[span]);
   }
 }
 
@@ -85,13 +104,17 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 
   PetscFunctionBeginUser;
   *walls = (LamWalls){.mesh = mesh, .loops = 2 * mesh->cell_count, .nodes = mesh->ring_nodes};
-  walls->spans = walls->nodes + LAM_FACES;
+  walls->parts = mesh->cuts ? mesh->cuts : LAM_FACES;
+  walls->per_part = 2 * mesh->along * LAM_FACES / walls->parts + 1;
+  walls->spans = walls->parts * walls->per_part;
   walls->is_patch = micro->is_patch;
   walls->apart = PetscMax(3, mesh->along);
   walls->groups = (walls->spans + GROUP - 1) / GROUP;
   all = walls->loops * walls->spans;
-  PetscCall(PetscMalloc5(walls->loops * walls->nodes, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight,
-                         mesh->cell_count, &walls->thickness, all, &walls->x, walls->spans, &walls->of));
+  PetscCall(PetscMalloc6(walls->loops * walls->nodes, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight,
+                         mesh->cell_count, &walls->thickness, all, &walls->x, walls->spans, &walls->of, walls->spans,
+                         &walls->ended));
+  PetscCall(PetscCalloc1(all, &walls->gone));
   PetscCall(PetscMalloc3(all, &walls->span, walls->loops, &walls->box, walls->loops * walls->groups, &walls->group));
   for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = PetscMin(DEEPEST, LamWallThickness(micro, c));
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
@@ -105,7 +128,8 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 PetscErrorCode LamWallsDestroy(LamWalls *walls)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(walls->node, walls->weight, walls->thickness, walls->x, walls->of));
+  PetscCall(PetscFree6(walls->node, walls->weight, walls->thickness, walls->x, walls->of, walls->ended));
+  PetscCall(PetscFree(walls->gone));
   PetscCall(PetscFree3(walls->span, walls->box, walls->group));
   PetscFunctionReturn(0);
 }
@@ -133,6 +157,21 @@ static inline PetscBool Meet(const LamBox *a, const LamBox *b)
                      b->low[1] <= a->high[1]);
 }
 
+/* Where the contour ends its control points are in the part of the span; the span between both sides of a cut goes on
+   from the one before it. */
+static void End(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
+{
+  PetscInt at;
+
+  if (!walls->gone[loop * walls->spans + span] && !LamWallsEnd(walls, loop, span)) return;
+  (void)LamWallsPart(walls, span, &at);
+  for (PetscInt d = 0; d < 2; ++d) {
+    if (at == 0) c[0][d] = c[1][d];
+    for (PetscInt a = 2; a < LAM_SPAN; ++a)
+      if (at + a - 1 >= walls->per_part) c[a][d] = c[a - 1][d];
+  }
+}
+
 static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
 {
   const PetscInt n = walls->spans;
@@ -143,6 +182,7 @@ static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt spa
     c[a][0] = walls->x[k][0];
     c[a][1] = walls->x[k][1];
   }
+  if (walls->mesh->cuts) End(walls, loop, span, c);
 }
 
 /* Position of the second control point of a span. */
@@ -206,6 +246,16 @@ static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
     LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, span->point[q]);
   if (i % GROUP == 0) *group = nothing;
   Widen(group, span->box.low, span->box.high);
+}
+
+void LamWallsTearAt(LamWalls *walls, const PetscBool torn[])
+{
+  for (PetscInt loop = 0; loop < walls->loops; ++loop)
+    for (PetscInt part = 0; part < walls->parts; ++part) {
+      const PetscInt cut = loop % 2 ? LAM_CUTS - 1 - part : (part + 1) % LAM_CUTS; /* at the end of the part */
+
+      walls->gone[loop * walls->spans + (part + 1) * walls->per_part - 1] = torn[loop / 2 * LAM_CUTS + cut];
+    }
 }
 
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
@@ -311,13 +361,15 @@ static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
 
   for (PetscInt i = GROUP * a; i < end[0]; ++i) {
     const LamBox *box = &walls->span[p->loop * n + i].box;
+
+    if (walls->gone[p->loop * n + i]) continue;
     const LamBox here = Moved(box, p->moved, 0.0), near = Moved(box, p->moved, p->reach);
 
     if (!Meet(&near, &walls->group[p->other * walls->groups + b])) continue;
     for (PetscInt j = GROUP * b; j < end[1]; ++j) {
       const LamWallSpan *other = &walls->span[p->other * n + j];
 
-      if (!(p->itself && Between(n, i, j) < walls->apart) && Meet(&near, &other->box) &&
+      if (!walls->gone[p->other * n + j] && !(p->itself && Between(n, i, j) < walls->apart) && Meet(&near, &other->box) &&
           !IsBeyond(p, other, here.low, here.high))
         VisitSpans(p, i, j);
     }

@@ -9,6 +9,10 @@
   a cell has two control points: the contour is straight up to them and rounds the corner within a sixth of a span. For
   wide laws they lie at (1 - bevel) v + bevel m, with the nodes m next to it.
 
+  Walls that can be cut (mesh.h) have such a pair at each cut, whose points are the nodes on both sides of it; the middle
+  of an element beside a cut is a control point as it is, so that a span depends on LAM_SPAN_NODES nodes. Once the cut is
+  torn both contours end at it, and the span between its sides is not there any more.
+
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 
@@ -47,7 +51,9 @@ typedef struct {
   const LamMesh *mesh;                   /* borrowed */
   PetscInt loops, nodes, spans;          /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; of a loop */
   PetscReal bevel;                       /* of corners, in spans */
-  LamSpanNodes *of;                      /* [span] of any loop */
+  LamSpanNodes *of, *ended;              /* [span] of any loop; and where the contour ends with it, or begins */
+  PetscInt parts, per_part;              /* of a loop between corners or cuts, and control points of each */
+  PetscBool *gone;                       /* [loop][span] between the sides of a torn cut */
   PetscBool is_patch;                    /* no images */
   PetscInt apart;                        /* least distance of points of one loop that may touch, in spans */
   PetscInt *node;                        /* [loop][node] nodes of the mesh */
@@ -67,6 +73,8 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 /* Sets the corners for a law of this width. */
 void LamWallsRound(LamWalls *walls, PetscReal width);
 PetscErrorCode LamWallsDestroy(LamWalls *walls);
+/* Sets which cuts are torn: torn [cell][LAM_CUTS]. */
+void LamWallsTearAt(LamWalls *walls, const PetscBool torn[]);
 /* Takes the positions of a state. */
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[]);
 
@@ -87,14 +95,31 @@ static inline PetscInt LamWallsNode(const LamWalls *walls, PetscInt loop, PetscI
 {
   return walls->node[loop * walls->nodes + (walls->of[span].first + k) % walls->nodes];
 }
+/* Whether a span is the last or the first one before or behind a torn cut. */
+static inline PetscBool LamWallsEnd(const LamWalls *walls, PetscInt loop, PetscInt span)
+{
+  const PetscBool *gone = &walls->gone[loop * walls->spans];
+
+  return (PetscBool)(gone[span + 1 == walls->spans ? 0 : span + 1] || gone[span == 0 ? walls->spans - 1 : span - 1]);
+}
+static inline const LamSpanNodes *LamWallsSpan(const LamWalls *walls, PetscInt loop, PetscInt span)
+{
+  return LamWallsEnd(walls, loop, span) ? &walls->ended[span] : &walls->of[span];
+}
+/* Part of a span, and its place there; that between two parts is the last one of the first. */
+static inline PetscInt LamWallsPart(const LamWalls *walls, PetscInt span, PetscInt *at)
+{
+  *at = span % walls->per_part;
+  return span / walls->per_part;
+}
 /* Face of a span of the outer walls, and which of its 2 along halves of edges; at a corner, half 2 along belongs to the
    next face, too. */
 static inline PetscInt LamWallsFace(const LamWalls *walls, PetscInt span, PetscInt *half)
 {
-  const PetscInt per_face = 2 * walls->mesh->along + 1;
+  const PetscInt part = LamWallsPart(walls, span, half), per_face = walls->parts / LAM_FACES;
 
-  *half = span % per_face;
-  return span / per_face;
+  *half += part % per_face * (walls->per_part - 1);
+  return part / per_face;
 }
 static inline PetscBool LamTouchIsLumen(const LamTouching *touch)
 {

@@ -4,7 +4,8 @@
 typedef struct {
   LamRVE rve;
   PetscReal dissipated;             /* in this step */
-  PetscReal spent[3], toughness[3]; /* by face family: energy spent, and that of fracture */
+  PetscReal spent[3], toughness[3]; /* of the lamella, by face family: energy spent, and that of fracture */
+  PetscReal torn;                   /* energy spent in cuts of walls */
 } Bonds;
 
 static void AddBond(void *ctx, const LamBondPoint *point)
@@ -12,10 +13,15 @@ static void AddBond(void *ctx, const LamBondPoint *point)
   Bonds *bonds = (Bonds *)ctx;
   const LamLayer *layer = bonds->rve->layer;
   const LamBond *bond = &layer->bond[point->point];
-  const PetscInt family = bonds->rve->contact->faces[point->face].face;
   const PetscReal weight = layer->weight[point->point];
+  PetscInt family;
 
   bonds->dissipated += weight * LamBondSpent(bond, &point->step);
+  if (point->face < 0) {
+    bonds->torn += weight * LamEnvelopeSpent(&bond->now, point->step.kappa);
+    return;
+  }
+  family = bonds->rve->contact->faces[point->face].face;
   bonds->spent[family] += weight * LamEnvelopeSpent(&bond->now, point->step.kappa);
   bonds->toughness[family] += weight * bond->now.energy;
 }
@@ -34,10 +40,11 @@ static void AddHolding(void *ctx, const LamBondPoint *point)
   const PetscInt hat = point->face * h->rve->contact->hats + (PetscInt)(2.0 * point->at + 0.5);
   PetscReal traction[2];
 
+  if (point->face < 0) return;
   LamBondTraction(bond, &point->jump, 2.0 * point->step.d, traction); /* d phi/d q = omega k/2 */
   h->forces->normal[point->point] = weight * traction[0];
   h->forces->shear[point->point] = weight * traction[1];
-  if (LamEnvelopeSpent(&bond->now, point->step.kappa) < LAM_BROKEN * bond->now.energy) h->forces->held[hat] += weight;
+  if (!LamBondIsBroken(bond, point->step.kappa)) h->forces->held[hat] += weight;
 }
 
 PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerForces *forces)
@@ -47,7 +54,7 @@ PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerFor
   PetscFunctionBeginUser;
   *forces = (LamLayerForces){0};
   if (!rve->layer) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc3(rve->layer->count, &forces->normal, rve->layer->count, &forces->shear, rve->contact->count,
+  PetscCall(PetscCalloc3(rve->layer->between, &forces->normal, rve->layer->between, &forces->shear, rve->contact->count,
                          &forces->held));
   LamLayerVisitPoints(rve, load->F, rve->y, AddHolding, (void *)&holding);
   PetscFunctionReturn(0);
@@ -86,6 +93,15 @@ static PetscReal Share(PetscReal whole, PetscReal part)
   return whole > 0.0 ? part / whole : NAN;
 }
 
+static void MeasureBursts(LamRVE rve, LamResponse *response)
+{
+  PetscInt burst = 0;
+
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) burst += LamHasBurst(rve, c);
+  response->burst_fraction = (PetscReal)burst / (PetscReal)rve->mesh.cell_count;
+  response->juice = rve->layer->juice;
+}
+
 void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   Bonds bonds = {.rve = rve};
@@ -99,6 +115,8 @@ void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
   }
   response->broken_fraction = Share(toughness, spent);
   response->dissipated = rve->layer->spent + bonds.dissipated / rve->mesh.V0;
+  response->dissipated_walls = bonds.torn / rve->mesh.V0;
+  MeasureBursts(rve, response);
   response->released = rve->layer->released;
   response->stored = (rve->energy - bonds.dissipated) / rve->mesh.V0;
   response->energy = response->stored + response->dissipated;

@@ -114,6 +114,7 @@ static void AddSealedTurgor(LamRVE rve, const LamLoad *load, Condensation *c)
   for (PetscInt k = 0; k < rve->linear->lumens; ++k) {
     const PetscReal factor = LamTurgorFactor(rve, k), compliance = seal->water[k] / seal->bulk_modulus;
 
+    if (LamHasBurst(rve, k)) continue;
     c->R[Q_F33 * c->size + pressures + k] -= seal->area[k];
     c->R[Q_TURGOR * c->size + pressures + k] += factor * compliance;
     c->Lq[Q_TURGOR] += factor * compliance * (rve->y[rve->ndof + k] - load->turgor * factor);
@@ -287,10 +288,11 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscBool derivative
 static void AddLayerEdge(void *ctx, const LamEdgeBlock *block)
 {
   Condensation *c = (Condensation *)ctx;
+  const LamEdgeNodes *nodes = block->nodes;
 
   for (PetscInt j = 0; j < LAM_EDGE_DOFS; ++j)
     for (PetscInt l = 0; l < 2; ++l) {
-      const PetscReal Sj = block->shift[j / 2][l];
+      const PetscReal Sj = nodes->shift[j / 2][l];
       const PetscInt q = 2 * (j % 2) + l;
 
       if (Sj == 0.0) continue;
@@ -298,8 +300,8 @@ static void AddLayerEdge(void *ctx, const LamEdgeBlock *block)
       for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
         const PetscReal K = block->sum.K[i][j] * Sj;
 
-        c->R[q * c->size + 2 * block->class[i / 2] + i % 2] += K;
-        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] += block->shift[i / 2][k] * K;
+        c->R[q * c->size + 2 * nodes->class[i / 2] + i % 2] += K;
+        for (PetscInt k = 0; k < 2; ++k) c->Lqq[2 * (i % 2) + k][q] += nodes->shift[i / 2][k] * K;
       }
     }
 }

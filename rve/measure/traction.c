@@ -52,8 +52,8 @@ static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], 
   const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
 
   for (PetscInt i = 0; i <= last; ++i) {
-    const PetscInt node = LamMeshOuterNode(mesh, cell, last * face + i);
-    const PetscInt opposite = LamMeshOuterNode(mesh, other, last * (face + 4) - i);
+    const PetscInt node = LamMeshOuterNode(mesh, cell, face, i);
+    const PetscInt opposite = LamMeshOuterNode(mesh, other, (face + LAM_FACES / 2) % LAM_FACES, last - i);
     const PetscReal share = IsJunctionOfThree(mesh, cell, face, i) ? 3.0 : 2.0;
 
     LamNodePosition(rve, load->F, rve->y, node, x[i]);
@@ -74,7 +74,7 @@ static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], Pets
    face. */
 static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt i)
 {
-  const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, 2 * rve->mesh.along * face + i);
+  const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, face, i);
 
   return (PetscBool)(rve->micro.is_patch && rve->mesh.node_class[node] == 0);
 }

@@ -12,6 +12,10 @@
     work = stored + dissipated + released
 
   holds to second order in the step but for the part with the jump, which is 2^-HALVINGS of it.
+
+  Bursts. A state that tears a wall through is solved again at the same load without the turgor of that cell, until no
+  more cells are torn. The fluid is then free: its potential, -p V_lumen, is taken out as work, and the energy with which
+  walls press it out is released.
 */
 #include "solve.h"
 
@@ -28,7 +32,7 @@
 
 static PetscBool BreaksMuch(LamRVE rve, const LamRVEState from, const LamRVEState to)
 {
-  return (PetscBool)(to->spent - from->spent > MOST * rve->layer->toughness);
+  return (PetscBool)(to->spent - from->spent > MOST * rve->layer->toughness[0]);
 }
 
 /* Most by which energies of different laws of contact differ, per V0: walls of the smooth one lie in each other by a
@@ -100,6 +104,56 @@ static PetscErrorCode SolveTarget(LamRVE rve, LamRVEState at, const Target *targ
   PetscFunctionReturn(0);
 }
 
+/* Energy per V0 of a cell's fluid at rve->y less that of the same fluid without pressure; sealed water is compressible.
+ */
+static PetscReal FluidEnergy(LamRVE rve, const LamLoad *load, PetscInt cell)
+{
+  const PetscReal p0 = load->turgor * LamTurgorFactor(rve, cell);
+
+  if (rve->seal.closed) return -0.5 * rve->seal.water[cell] * p0 * p0 / rve->seal.bulk_modulus / rve->mesh.V0;
+  return -p0 * load->F[8] * rve->seal.area[cell] / rve->mesh.V0;
+}
+
+/* Empties the cells that a state has just torn; returns whether there are any. */
+static PetscBool Empty(LamRVE rve, LamRVEState state)
+{
+  const LamLayer *layer = rve->layer;
+  PetscBool any = PETSC_FALSE;
+
+  LamLayerTake(rve, state);
+  LamLumenAreas(rve, state->y, rve->seal.area);
+  for (PetscInt k = 0; k < rve->mesh.cell_count * rve->mesh.cuts; ++k) {
+    const PetscInt cell = k / LAM_CUTS;
+
+    if (!layer->torn[k] || state->burst[cell]) continue;
+    any = PETSC_TRUE;
+    state->burst[cell] = PETSC_TRUE;
+    state->work -= FluidEnergy(rve, &state->load, cell);
+    state->juice += state->load.F[8] * rve->seal.area[cell] / rve->mesh.V0;
+  }
+  return any;
+}
+
+/* Lets cells burst until no more are torn. Without a state in the end the response has no fields. */
+static PetscErrorCode Burst(LamRVE rve, const Target *target, LamRVEState state, Retracing *r)
+{
+  LamRVEState end;
+
+  PetscFunctionBeginUser;
+  if (!rve->mesh.cuts) PetscFunctionReturn(0);
+  PetscCall(LamRVEStateCreate(rve, &end));
+  while (r->response.status == LAM_CONVERGED && !rve->work.stopped && Empty(rve, state)) {
+    const PetscReal fluid = state->work - rve->layer->work, energy = state->energy[0];
+
+    PetscCall(SolveTarget(rve, state, target, end, r));
+    if (r->response.status != LAM_CONVERGED) break;
+    r->lost += energy + fluid - end->energy[0];
+    PetscCall(LamRVEStateCopy(end, state));
+  }
+  PetscCall(LamRVEStateDestroy(&end));
+  PetscFunctionReturn(0);
+}
+
 /* Takes the step from `at` to a target, in halves while it is too long; on return `at` is the state there. */
 static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, PetscInt halvings, Retracing *r)
 {
@@ -122,6 +176,7 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
       if (HasJumped(at, end, &step) && step.defect < STAYS * r->first) r->lost -= step.defect;
       end->work = at->work + step.work;
       PetscCall(LamRVEStateCopy(end, at));
+      PetscCall(Burst(rve, target, at, r));
     }
   }
   if (too_long && halvings > 0 && !rve->work.stopped) {
@@ -133,33 +188,25 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
 }
 
 /* Replaces a state and its response by those at the end of smaller steps; where these fail, it stays. */
-static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const LamStressControl *control, PetscReal defect,
-                                LamRVEState state, LamResponse *response, PetscReal *lost)
+static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const Target *end, LamRVEState state, Retracing *r)
 {
-  Target end = {.load = state->load, .given = control}, middle;
-  Retracing r = {
-      .first = defect, .iterations = response->newton_iterations, .factorisations = response->factorisations};
+  const Target middle = Middle(before, end);
+  const LamResponse found = r->response;
   LamRVEState at;
 
   PetscFunctionBeginUser;
-  if (control) end.control = *control;
-  middle = Middle(before, &end);
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
-  rve->looks_back = PETSC_TRUE;
-  PetscCall(Retrace(rve, at, &middle, HALVINGS - 1, &r));
-  if (r.response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &end, HALVINGS - 1, &r));
-  rve->looks_back = PETSC_FALSE;
-  if (r.response.status == LAM_CONVERGED) {
+  PetscCall(Retrace(rve, at, &middle, HALVINGS - 1, r));
+  if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, end, HALVINGS - 1, r));
+  if (r->response.status == LAM_CONVERGED) {
     PetscCall(LamRVEStateCopy(at, state));
-    *response = r.response;
-    *lost = r.lost;
   } else {
     PetscCall(LamTakeState(rve, state));
-    *lost = PetscMax(0.0, -defect);
+    r->response = found;
+    r->lost = PetscMax(0.0, -r->first);
+    PetscCall(Burst(rve, end, state, r));
   }
-  response->newton_iterations = r.iterations;
-  response->factorisations = r.factorisations;
   PetscCall(LamRVEStateDestroy(&at));
   PetscFunctionReturn(0);
 }
@@ -168,17 +215,31 @@ PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressContr
                             LamResponse *response)
 {
   const LamStepWork step = LamStepWorkOf(before, state);
-  PetscReal lost = 0.0;
+  Target end = {.load = state->load, .given = control};
+  Retracing r = {.first = step.defect,
+                 .iterations = response->newton_iterations,
+                 .factorisations = response->factorisations,
+                 .response = *response};
 
   PetscFunctionBeginUser;
   if (response->status != LAM_CONVERGED || rve->work.stopped) PetscFunctionReturn(0);
+  if (control) end.control = *control;
   state->work = before->work + step.work;
-  if (IsTooLong(rve, before, state, &step))
-    PetscCall(TakeAgain(rve, before, control, step.defect, state, response, &lost));
-  response->jumped = (PetscBool)(lost > LAM_LEAST_LOSS);
+  rve->looks_back = PETSC_TRUE;
+  PetscCall(IsTooLong(rve, before, state, &step) ? TakeAgain(rve, before, &end, state, &r)
+                                                 : Burst(rve, &end, state, &r));
+  rve->looks_back = PETSC_FALSE;
+  *response = r.response;
+  response->newton_iterations = r.iterations;
+  response->factorisations = r.factorisations;
+  if (response->status != LAM_CONVERGED) {
+    PetscCall(LamRVEStateCopy(before, state));
+    PetscFunctionReturn(0);
+  }
+  response->jumped = (PetscBool)(r.lost > LAM_LEAST_LOSS);
   if (response->jumped) {
-    response->energy_released = lost;
-    state->released += lost;
+    response->energy_released = r.lost;
+    state->released += r.lost;
   }
   response->released = state->released;
   response->work = state->work;

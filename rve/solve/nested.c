@@ -7,7 +7,7 @@
   the latter from a bilinear fit per element, as stresses computed from interpolated positions oscillate if walls are
   nearly incompressible. The result is the initial state of a solve at the same load. If the coarse solve fails, the
   fine mesh is not solved, and the response gives the reason and the mesh. Sealed tissue, whose pressures are unknowns,
-  does not use this method.
+  and tissue whose walls tear do not use this method.
 */
 #include "contact_find.h"
 #include "mortar_impl.h"
@@ -214,7 +214,7 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
 {
   return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > 1 && !rve->seal.allowed &&
-                     !state->solved);
+                     !rve->mesh.cuts && !state->solved);
 }
 
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response)

@@ -68,7 +68,8 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
   if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
-    rve->stiffest = PetscMax(rve->stiffest, rve->micro.lamella.stiffness * LamLongestEdge(&rve->mesh));
+    rve->stiffest = PetscMax(rve->stiffest, PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) *
+                                                LamLongestEdge(&rve->mesh));
   PetscFunctionReturn(0);
 }
 

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 12
+#define MOST_PARTS 14
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -25,7 +25,9 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {s->history, (size_t)s->points * sizeof(*s->history)},
                                 {&s->spent, s->points ? sizeof(s->spent) : 0},
                                 {&s->released, s->points ? sizeof(s->released) : 0},
-                                {&s->work, s->points ? sizeof(s->work) : 0}};
+                                {&s->work, s->points ? sizeof(s->work) : 0},
+                                {&s->juice, s->points ? sizeof(s->juice) : 0},
+                                {s->burst, (size_t)s->cells * sizeof(*s->burst)}};
   PetscInt count = 0;
 
   for (PetscInt k = 0; k < MOST_PARTS; ++k)
@@ -86,6 +88,8 @@ PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to)
   to->spent = from->spent;
   to->released = from->released;
   to->work = from->work;
+  to->juice = from->juice;
+  PetscCall(PetscArraycpy(to->burst, from->burst, to->cells));
   PetscFunctionReturn(0);
 }
 
@@ -98,8 +102,9 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   (*state)->multipliers = rve->contact ? rve->contact->count : 0;
   (*state)->faces = rve->contact ? rve->contact->face_count : 0;
   (*state)->points = rve->layer ? rve->layer->count : 0;
-  PetscCall(PetscMalloc4((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
-                         &(*state)->hats, (*state)->points, &(*state)->history));
+  (*state)->cells = rve->mesh.cuts ? rve->mesh.cell_count : 0;
+  PetscCall(PetscMalloc5((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats, (*state)->points, &(*state)->history, (*state)->cells, &(*state)->burst));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
@@ -120,9 +125,11 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->width = 0.0;
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = NAN;
   for (PetscInt p = 0; p < state->points; ++p) state->history[p] = LAM_UNDAMAGED;
-  state->spent = state->released = state->work = 0.0;
+  for (PetscInt c = 0; c < state->cells; ++c) state->burst[c] = PETSC_FALSE;
+  state->spent = state->released = state->work = state->juice = 0.0;
   if (!rve->layer) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = 0.0; /* it is the state at its load */
+  LamLayerTake(rve, state);
   LamLumenAreas(rve, state->y, rve->seal.area);
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c)
     state->energy[6] -= LamTurgorFactor(rve, c) * rve->seal.area[c] / rve->mesh.V0;
@@ -133,7 +140,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(PetscFree4((*state)->y, (*state)->lambda, (*state)->hats, (*state)->history));
+  PetscCall(PetscFree5((*state)->y, (*state)->lambda, (*state)->hats, (*state)->history, (*state)->burst));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }

@@ -90,6 +90,28 @@ PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro)
   return PetscMin(PetscMax(stiff, steep), LAM_LAMELLA_STIFFEST);
 }
 
+/* Modulus of a wall along itself at rest, E'. */
+static PetscReal ModulusAlong(const LamWall *wall)
+{
+  return 4.0 * (wall->C1 + wall->C2) + 2.0 * LamWallFibreModulus(wall);
+}
+
+PetscReal LamTearingLeastStiffness(const LamTearing *tearing)
+{
+  return 0.5 * Brittleness(tearing->strength, tearing->energy);
+}
+
+PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro)
+{
+  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  const PetscReal steep = STEEP * LamTearingLeastStiffness(&micro->tearing), between = 1.0 / sqrt(3.0); /* cuts */
+  PetscReal stiff = 0.0;
+
+  for (PetscInt c = 0; c < cells; c++)
+    stiff = PetscMax(stiff, ModulusAlong(micro->cell ? &micro->cell[c].wall : &micro->wall) / between / SOFT);
+  return PetscMin(PetscMax(stiff, steep), LAM_LAMELLA_STIFFEST);
+}
+
 PetscReal LamLamellaCompliance(const LamMicrostructure *micro)
 {
   return PriceTimesStiffness(micro) / micro->lamella.stiffness;
@@ -104,7 +126,7 @@ PetscReal LamLamellaZone(const LamMicrostructure *micro)
   for (PetscInt c = 0; c < cells; c++) {
     const LamWall *wall = micro->cell ? &micro->cell[c].wall : &micro->wall;
     const PetscReal t = LamWallThickness(micro, c);
-    const PetscReal thick = (4.0 * (wall->C1 + wall->C2) + 2.0 * LamWallFibreModulus(wall)) * ductility;
+    const PetscReal thick = ModulusAlong(wall) * ductility;
 
     zone = PetscMin(zone, PetscMin(thick, pow(t, 0.75) * pow(thick, 0.25)));
   }
