@@ -126,11 +126,14 @@ static inline PetscBool LamHasBurst(LamRVE rve, PetscInt cell)
 {
   return (PetscBool)(rve->layer && rve->layer->burst && rve->layer->burst[cell]);
 }
-/* Turgor of a cell relative to that of the load. */
+/* Turgor of a cell relative to that of the load; and of one that has not burst. */
+static inline PetscReal LamWholeTurgorFactor(LamRVE rve, PetscInt cell)
+{
+  return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
+}
 static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
 {
-  if (LamHasBurst(rve, cell)) return 0.0;
-  return rve->micro.cell ? rve->micro.cell[cell].turgor : 1.0;
+  return LamHasBurst(rve, cell) ? 0.0 : LamWholeTurgorFactor(rve, cell);
 }
 
 /* Whether any lumen can be under pressure, at any positions. */

@@ -4,7 +4,8 @@
   itself, or is clockwise because the ring is inverted, is rejected. This occurs at large compression.
 
   Method. The inner loop of each cell is the polygon of its nodes (two per element). The loop is simple if no two
-  non-adjacent sides intersect. Bounding boxes are compared first.
+  non-adjacent sides intersect. Bounding boxes are compared first. At a cut (mesh.h) both nodes are in the polygon, and
+  may pass each other by rounding or by the compliance of the cut: sides beside it count as adjacent.
 */
 #include "measure.h"
 
@@ -25,12 +26,12 @@ static PetscBool SidesCross(const PetscReal a[2], const PetscReal b[2], const Pe
   return (PetscBool)(Cross(a, b, c) * Cross(a, b, d) < 0.0 && Cross(c, d, a) * Cross(c, d, b) < 0.0);
 }
 
-/* Whether the polygon x[n][2] crosses itself. */
-static PetscBool CrossesItself(PetscInt n, const PetscReal x[][2])
+/* Whether the polygon x[n][2] crosses itself; sides less than `apart` sides from each other do not count. */
+static PetscBool CrossesItself(PetscInt n, const PetscReal x[][2], PetscInt apart)
 {
   for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt j = i + 2; j < n; ++j) {
-      if (i == 0 && j == n - 1) continue;
+    for (PetscInt j = i + apart; j < n; ++j) {
+      if (i + n - j < apart) continue;
       if (BoxesOverlap(x[i], x[i + 1], x[j], x[(j + 1) % n]) && SidesCross(x[i], x[i + 1], x[j], x[(j + 1) % n]))
         return PETSC_TRUE;
     }
@@ -72,6 +73,7 @@ PetscErrorCode LamRefuseCollapse(PetscInt cell, const PetscReal between[2], LamS
 PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *cell)
 {
   const LamMesh *mesh = &rve->mesh;
+  const PetscInt apart = mesh->cuts ? 3 : 2;
   PetscReal(*x)[2];
 
   PetscFunctionBeginUser;
@@ -85,7 +87,7 @@ PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *
       x[i][1] = position[1];
     }
     if (SignedArea(mesh->ring_nodes, (const PetscReal(*)[2])x) <= 0.0 ||
-        CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x))
+        CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x, apart))
       *cell = c;
   }
   PetscCall(PetscFree(x));

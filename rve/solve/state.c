@@ -129,10 +129,9 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   state->spent = state->released = state->work = state->juice = 0.0;
   if (!rve->layer) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = 0.0; /* it is the state at its load */
-  LamLayerTake(rve, state);
   LamLumenAreas(rve, state->y, rve->seal.area);
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c)
-    state->energy[6] -= LamTurgorFactor(rve, c) * rve->seal.area[c] / rve->mesh.V0;
+    state->energy[6] -= LamWholeTurgorFactor(rve, c) * rve->seal.area[c] / rve->mesh.V0;
   PetscFunctionReturn(0);
 }
 
