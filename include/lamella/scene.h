@@ -132,6 +132,7 @@ LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
    along themselves, E'. */
 LAM_EXPORT PetscReal LamTearingLeastStiffness(const LamTearing *tearing);
 LAM_EXPORT PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro);
+LAM_EXPORT PetscReal LamTearingCompliance(const LamMicrostructure *micro); /* that price */
 /* What the compliance of the lamella costs of the tissue's stiffness, as a share of it: the change of the tangent at
    rest against that of bonded tissue, Frobenius norms. */
 LAM_EXPORT PetscReal LamLamellaCompliance(const LamMicrostructure *micro);

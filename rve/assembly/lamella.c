@@ -290,6 +290,73 @@ static void FindTorn(LamRVE rve)
   if (cuts) LamWallsTearAt(&rve->smooth->walls, layer->torn);
 }
 
+/* Energy of a cell's fluid at rve->y less that of the same fluid without pressure; sealed water is compressible. */
+static PetscReal FluidEnergy(LamRVE rve, const LamLoad *load, PetscInt cell)
+{
+  const PetscReal p0 = load->turgor * LamTurgorFactor(rve, cell);
+
+  if (rve->seal.closed) return -0.5 * rve->seal.water[cell] * p0 * p0 / rve->seal.bulk_modulus;
+  return -p0 * load->F[8] * rve->seal.area[cell];
+}
+
+static void Empty(LamRVE rve, const LamLoad *load, PetscInt cell)
+{
+  LamLayer *layer = rve->layer;
+
+  LamLumenAreas(rve, rve->y, rve->seal.area);
+  layer->work -= FluidEnergy(rve, load, cell) / rve->mesh.V0;
+  layer->juice += load->F[8] * rve->seal.area[cell] / rve->mesh.V0;
+  layer->burst[cell] = PETSC_TRUE;
+  if (rve->seal.closed) rve->y[rve->ndof + cell] = 0.0;
+}
+
+typedef struct {
+  LamRVE rve;
+  PetscBool *broken;     /* [cut] */
+  LamBondHistory *after; /* [point of a cut] */
+  PetscReal *spent;      /* likewise: in this step, per V0 */
+} Tearing;
+
+static void WatchCut(void *ctx, const LamBondPoint *point)
+{
+  const Tearing *t = (const Tearing *)ctx;
+  const LamLayer *layer = t->rve->layer;
+  const LamBond *bond = &layer->bond[point->point];
+  const PetscInt k = point->point - layer->between;
+
+  if (point->face >= 0) return;
+  t->after[k] = LamBondKeep(bond, &point->jump, &point->step);
+  t->spent[k] = layer->weight[point->point] * LamBondSpent(bond, &point->step) / t->rve->mesh.V0;
+  if (!LamBondIsBroken(bond, point->step.kappa))
+    t->broken[k / (LAM_EDGE_POINTS * t->rve->mesh.through)] = PETSC_FALSE;
+}
+
+PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any)
+{
+  LamLayer *layer = rve->layer;
+  const PetscInt cuts = rve->mesh.cell_count * rve->mesh.cuts, through = LAM_EDGE_POINTS * rve->mesh.through;
+  Tearing t = {.rve = rve};
+
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  if (!cuts) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc3(cuts, &t.broken, cuts * through, &t.after, cuts * through, &t.spent));
+  for (PetscInt k = 0; k < cuts; ++k) t.broken[k] = PETSC_TRUE;
+  LamLayerVisitPoints(rve, load->F, rve->y, WatchCut, &t);
+  for (PetscInt k = 0; k < cuts; ++k) {
+    if (!t.broken[k] || LamHasBurst(rve, k / LAM_CUTS)) continue;
+    *any = layer->torn[k] = PETSC_TRUE;
+    for (PetscInt q = k * through; q < (k + 1) * through; ++q) {
+      LamBondTake(&t.after[q], &layer->bond[layer->between + q]);
+      layer->spent += t.spent[q];
+    }
+    Empty(rve, load, k / LAM_CUTS);
+  }
+  if (*any) LamWallsTearAt(&rve->smooth->walls, layer->torn);
+  PetscCall(PetscFree3(t.broken, t.after, t.spent));
+  PetscFunctionReturn(0);
+}
+
 void LamLayerTake(LamRVE rve, const LamRVEState state)
 {
   LamLayer *layer = rve->layer;

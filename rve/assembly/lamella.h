@@ -6,8 +6,8 @@
   contact, which keeps all walls apart. So tissue that is not yet damaged is elastic, without contact to be found.
 
   Walls that tear have the same law across their cuts (mesh.h), with edges through the wall. The sides of a cut keep each
-  other out, damaged or not, by the stiffness of the undamaged one. A cut is torn once all its points are broken at the
-  start of a step; a cell with one bursts (lamella_step.c).
+  other out, damaged or not, by the stiffness of the undamaged one. A cut is torn once all its points are broken; its cell
+  bursts, at that iterate (LamLayerBurst).
 */
 #ifndef LAM_RVE_LAMELLA_H
 #define LAM_RVE_LAMELLA_H
@@ -34,8 +34,9 @@ typedef struct {
   PetscReal spent, released, work, juice; /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
-  PetscBool *torn;  /* [cell][LAM_CUTS] cuts broken through at the start of the step; NULL: walls do not tear */
-  PetscBool *burst; /* [cell] likewise */
+  PetscBool *torn;  /* [cell][LAM_CUTS] cuts broken through at the start of the step, or by which a cell bursts in it;
+                       NULL: walls do not tear */
+  PetscBool *burst; /* [cell] */
 } LamLayer;
 
 /* Sums over the points of an edge. */

@@ -253,6 +253,12 @@ PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);
 /* The history at the start of the step: that of a state. */
 void LamLayerTake(LamRVE rve, const LamRVEState state);
+/*
+  Lets the cells burst whose wall is torn through at rve->y, an iterate of the step: under constant pressure a torn cell
+  has no equilibrium. The cut stays torn, and the energy spent in it, the fluid and its work are those until here: the
+  fluid is free, its potential -p V_lumen is taken out as work. *any: there is one.
+*/
+PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any);
 /* Stores the history at the end of the step, at rve->y. */
 void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state);
 

@@ -255,6 +255,7 @@ PetscErrorCode LamContactFind(LamRVE rve, const LamLoad *load, LamBorder *border
     const PetscReal width = rve->layer ? LAM_USUAL_WIDTH : k == 0 && near ? before->width : LAM_SEARCH_WIDTH;
 
     if (border) border->load = guess;
+    LamLayerTake(rve, before); /* an attempt before may have torn walls */
     ok = PETSC_TRUE;
     if (k == 0)
       LamContactStartNear(rve, before, &guess);

@@ -41,6 +41,7 @@ LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to)
     step.work += 0.5 * (from->energy[1 + k] + to->energy[1 + k]) * dq[k];
     step.turnover += PetscAbsReal(0.5 * (to->energy[1 + k] - from->energy[1 + k]) * dq[k]);
   }
+  step.work += to->work - from->work; /* of fluid from cells that have burst */
   step.defect = to->energy[0] - from->energy[0] - step.work;
   return step;
 }

@@ -32,6 +32,7 @@ PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate)
   (*estimate)->rve = rve;
   if (rve->seal.allowed) PetscFunctionReturn(0);
   micro.along += (micro.along + 1) / 2;
+  if (LamWallsTear(&micro)) micro.along += micro.along % 2;
   micro.through += (micro.through + 1) / 2;
   PetscCall(LamRVECreateLike(rve, &micro, LAM_WANT_STRESS, &(*estimate)->finer));
   PetscCall(LamRVESetTolerance((*estimate)->finer, PetscMax(rve->tolerance, 1e-6)));

@@ -12,10 +12,6 @@
     work = stored + dissipated + released
 
   holds to second order in the step but for the part with the jump, which is 2^-HALVINGS of it.
-
-  Bursts. A state that tears a wall through is solved again at the same load without the turgor of that cell, until no
-  more cells are torn. The fluid is then free: its potential, -p V_lumen, is taken out as work, and the energy with which
-  walls press it out is released.
 */
 #include "solve.h"
 
@@ -104,56 +100,6 @@ static PetscErrorCode SolveTarget(LamRVE rve, LamRVEState at, const Target *targ
   PetscFunctionReturn(0);
 }
 
-/* Energy per V0 of a cell's fluid at rve->y less that of the same fluid without pressure; sealed water is compressible.
- */
-static PetscReal FluidEnergy(LamRVE rve, const LamLoad *load, PetscInt cell)
-{
-  const PetscReal p0 = load->turgor * LamTurgorFactor(rve, cell);
-
-  if (rve->seal.closed) return -0.5 * rve->seal.water[cell] * p0 * p0 / rve->seal.bulk_modulus / rve->mesh.V0;
-  return -p0 * load->F[8] * rve->seal.area[cell] / rve->mesh.V0;
-}
-
-/* Empties the cells that a state has just torn; returns whether there are any. */
-static PetscBool Empty(LamRVE rve, LamRVEState state)
-{
-  const LamLayer *layer = rve->layer;
-  PetscBool any = PETSC_FALSE;
-
-  LamLayerTake(rve, state);
-  LamLumenAreas(rve, state->y, rve->seal.area);
-  for (PetscInt k = 0; k < rve->mesh.cell_count * rve->mesh.cuts; ++k) {
-    const PetscInt cell = k / LAM_CUTS;
-
-    if (!layer->torn[k] || state->burst[cell]) continue;
-    any = PETSC_TRUE;
-    state->burst[cell] = PETSC_TRUE;
-    state->work -= FluidEnergy(rve, &state->load, cell);
-    state->juice += state->load.F[8] * rve->seal.area[cell] / rve->mesh.V0;
-  }
-  return any;
-}
-
-/* Lets cells burst until no more are torn. Without a state in the end the response has no fields. */
-static PetscErrorCode Burst(LamRVE rve, const Target *target, LamRVEState state, Retracing *r)
-{
-  LamRVEState end;
-
-  PetscFunctionBeginUser;
-  if (!rve->mesh.cuts) PetscFunctionReturn(0);
-  PetscCall(LamRVEStateCreate(rve, &end));
-  while (r->response.status == LAM_CONVERGED && !rve->work.stopped && Empty(rve, state)) {
-    const PetscReal fluid = state->work - rve->layer->work, energy = state->energy[0];
-
-    PetscCall(SolveTarget(rve, state, target, end, r));
-    if (r->response.status != LAM_CONVERGED) break;
-    r->lost += energy + fluid - end->energy[0];
-    PetscCall(LamRVEStateCopy(end, state));
-  }
-  PetscCall(LamRVEStateDestroy(&end));
-  PetscFunctionReturn(0);
-}
-
 /* Takes the step from `at` to a target, in halves while it is too long; on return `at` is the state there. */
 static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, PetscInt halvings, Retracing *r)
 {
@@ -176,7 +122,6 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
       if (HasJumped(at, end, &step) && step.defect < STAYS * r->first) r->lost -= step.defect;
       end->work = at->work + step.work;
       PetscCall(LamRVEStateCopy(end, at));
-      PetscCall(Burst(rve, target, at, r));
     }
   }
   if (too_long && halvings > 0 && !rve->work.stopped) {
@@ -205,7 +150,6 @@ static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const Target *en
     PetscCall(LamTakeState(rve, state));
     r->response = found;
     r->lost = PetscMax(0.0, -r->first);
-    PetscCall(Burst(rve, end, state, r));
   }
   PetscCall(LamRVEStateDestroy(&at));
   PetscFunctionReturn(0);
@@ -226,16 +170,11 @@ PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressContr
   if (control) end.control = *control;
   state->work = before->work + step.work;
   rve->looks_back = PETSC_TRUE;
-  PetscCall(IsTooLong(rve, before, state, &step) ? TakeAgain(rve, before, &end, state, &r)
-                                                 : Burst(rve, &end, state, &r));
+  if (IsTooLong(rve, before, state, &step)) PetscCall(TakeAgain(rve, before, &end, state, &r));
   rve->looks_back = PETSC_FALSE;
   *response = r.response;
   response->newton_iterations = r.iterations;
   response->factorisations = r.factorisations;
-  if (response->status != LAM_CONVERGED) {
-    PetscCall(LamRVEStateCopy(before, state));
-    PetscFunctionReturn(0);
-  }
   response->jumped = (PetscBool)(r.lost > LAM_LEAST_LOSS);
   if (response->jumped) {
     response->energy_released = r.lost;

@@ -12,6 +12,8 @@
   A lamella that loads on and unloads at kinks is met by steps of an upper bound of its energy (cohesive.h) in turn with
   Newton's, where these are short.
 
+  Cells whose walls tear on the way lose their pressure, and the iteration goes on from there (lamella.h).
+
   With free components of F (border.h) the energy is L - V0 P.F, and the border's steps descend.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
@@ -233,7 +235,7 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
   PetscCall(Create(rve, load, border, &d));
   for (PetscInt it = 0; it < ITERATIONS && LamMayIterate(rve); ++it) {
     PetscReal norm, alpha;
-    PetscBool valid, ok;
+    PetscBool valid, ok, burst;
 
     PetscCall(LamAssemble(rve, load, rve->y, &d.energy, rve->residual, &valid));
     if (!valid) break;
@@ -262,6 +264,8 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
       break;
     }
     if (rve->seal.closed && alpha < 1.0) LamSealSetConsistent(rve, load, rve->y);
+    if (rve->layer) PetscCall(LamLayerBurst(rve, d.load, &burst));
+    if (rve->layer && burst) least = PETSC_INFINITY;
   }
   PetscCall(Destroy(&d));
   PetscFunctionReturn(0);

@@ -99,6 +99,16 @@ static json_t *Lamella(const LamMicrostructure *micro, const LamScales *scales)
                    LamJSONReal(LamLamellaZone(micro)));
 }
 
+static json_t *Tearing(const LamMicrostructure *micro, const LamScales *scales)
+{
+  const LamTearing *t = &micro->tearing;
+
+  return json_pack("{s:o, s:o, s:o, s:o}", "strength", LamJSONReal(t->strength * scales->stress * 1e-6),
+                   "fracture_energy", LamJSONReal(t->energy * scales->stress * scales->length), "stiffness",
+                   LamJSONReal(t->stiffness * StiffnessUnit(scales)), "compliance",
+                   LamJSONReal(LamTearingCompliance(micro)));
+}
+
 static json_t *Spread(const LamCellSpread *spread, PetscReal MPa)
 {
   return json_pack("{s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "kinds", (json_int_t)spread->kinds, "wall_thickness",
@@ -176,6 +186,7 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
   }
   if (micro->interface == LAM_INTERFACE_LAMELLA) json_object_set_new(o, "lamella", Lamella(micro, &scene->scales));
+  if (LamWallsTear(micro)) json_object_set_new(o, "tearing", Tearing(micro, &scene->scales));
   if (plan->load_states)
     json_object_set_new(o, "load",
                         Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->cost.state));
@@ -255,6 +266,18 @@ static void PrintLamella(const LamScene *scene, const LamMicrostructure *micro)
          (double)(100 * LamLamellaCompliance(micro)));
 }
 
+static void PrintTearing(const LamMicrostructure *micro, const LamScales *scales)
+{
+  const LamTearing *t = &micro->tearing;
+  const PetscReal opening = 2.0 * t->energy / t->strength;
+
+  printf("  tear at %.4g MPa and spend %.4g J/m^2, up to an opening of %.3g um, %.3g of the thickness; cuts of %.4g "
+         "MPa/mm cost about %.2g %% of their stiffness\n",
+         (double)(t->strength * scales->stress * 1e-6), (double)(t->energy * scales->stress * scales->length),
+         (double)(1e6 * opening * scales->length), (double)(opening / micro->wall_thickness),
+         (double)(t->stiffness * StiffnessUnit(scales)), (double)(100 * LamTearingCompliance(micro)));
+}
+
 static void PrintInterface(const LamScene *scene, const LamMicrostructure *micro)
 {
   if (micro->interface == LAM_INTERFACE_LAMELLA)
@@ -302,6 +325,7 @@ static void PrintModel(const Check *check)
   printf(", wall %.4g of the apothem (%.4g um), face normal 0 at %.4g deg\n", (double)micro->wall_thickness,
          (double)(1e6 * scene->scales.length), (double)(micro->orientation * 180 / PETSC_PI));
   PrintWall(&micro->wall, MPa);
+  if (LamWallsTear(micro)) PrintTearing(micro, &scene->scales);
   if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, micro->interface, MPa);
   PrintInterface(scene, micro);
   if (scene->turgor != 0 || scene->sealed)

@@ -101,15 +101,28 @@ PetscReal LamTearingLeastStiffness(const LamTearing *tearing)
   return 0.5 * Brittleness(tearing->strength, tearing->energy);
 }
 
-PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro)
+/* Share of the stiffness of walls along themselves that their cuts cost, times the stiffness of these. */
+static PetscReal CutPriceTimesStiffness(const LamMicrostructure *micro)
 {
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
-  const PetscReal steep = STEEP * LamTearingLeastStiffness(&micro->tearing), between = 1.0 / sqrt(3.0); /* cuts */
-  PetscReal stiff = 0.0;
+  const PetscReal between = 1.0 / sqrt(3.0); /* cuts, apothems */
+  PetscReal stiffest = 0.0;
 
   for (PetscInt c = 0; c < cells; c++)
-    stiff = PetscMax(stiff, ModulusAlong(micro->cell ? &micro->cell[c].wall : &micro->wall) / between / SOFT);
-  return PetscMin(PetscMax(stiff, steep), LAM_LAMELLA_STIFFEST);
+    stiffest = PetscMax(stiffest, ModulusAlong(micro->cell ? &micro->cell[c].wall : &micro->wall));
+  return stiffest / between;
+}
+
+PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro)
+{
+  const PetscReal steep = STEEP * LamTearingLeastStiffness(&micro->tearing);
+
+  return PetscMin(PetscMax(CutPriceTimesStiffness(micro) / SOFT, steep), LAM_LAMELLA_STIFFEST);
+}
+
+PetscReal LamTearingCompliance(const LamMicrostructure *micro)
+{
+  return CutPriceTimesStiffness(micro) / micro->tearing.stiffness;
 }
 
 PetscReal LamLamellaCompliance(const LamMicrostructure *micro)

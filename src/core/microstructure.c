@@ -112,6 +112,9 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
     fprintf(out, ", \"width\": %.12g", Clean(micro->contact_width));
   if (micro->interface == LAM_INTERFACE_LAMELLA) DescribeLamella(&micro->lamella, out);
   fprintf(out, "}");
+  if (LamWallsTear(micro))
+    fprintf(out, ", \"tearing\": {\"strength\": %.12g, \"fracture_energy\": %.12g, \"stiffness\": %.12g}",
+            Clean(micro->tearing.strength), Clean(micro->tearing.energy), Clean(micro->tearing.stiffness));
   if (micro->cell) {
     fprintf(out, ", \"cell\": [");
     DescribeCells(micro, out);
@@ -295,10 +298,11 @@ static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
   json_t *wall, *interface, *patch = NULL, *cells_that_differ = NULL;
   int cells[2], along, through;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o}", "wall_thickness",
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?{s:F, s:F, s:F}}", "wall_thickness",
                   &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
                   "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
-                  &interface, "cell", &cells_that_differ))
+                  &interface, "cell", &cells_that_differ, "tearing", "strength", &m->tearing.strength,
+                  "fracture_energy", &m->tearing.energy, "stiffness", &m->tearing.stiffness))
     return PETSC_FALSE;
   if (cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
   for (int i = 0; i < 2; i++) m->cells[i] = cells[i];

@@ -114,6 +114,8 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
 
 /* The parts of a scene, in this order. */
 PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene);
+/* Of walls that tear: sets the stiffness of cuts; the nodes of their energy and of the elements along a face. */
+PetscErrorCode LamSceneCheckTearing(const LamNode *energy, const LamNode *along, LamMicrostructure *micro);
 PetscErrorCode LamSceneBuildStrength(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildLoad(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene);

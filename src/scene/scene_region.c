@@ -172,6 +172,12 @@ static void ScaleLamella(PetscReal length, PetscReal stress, LamLamella *lamella
   lamella->junction_length *= length;
 }
 
+static void ScaleTearing(PetscReal length, PetscReal stress, LamTearing *tearing)
+{
+  tearing->strength *= stress;
+  tearing->energy *= stress * length;
+}
+
 /* Missing lengths and moduli have the same physical value as in the scene's own tissue. */
 static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
 {
@@ -186,12 +192,14 @@ static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, L
   micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
   micro->clearance = micro->clearance * own->length / scales->length;
   ScaleLamella(own->length / scales->length, own->stress / scales->stress, &micro->lamella);
+  ScaleTearing(own->length / scales->length, own->stress / scales->stress, &micro->tearing);
   lamella = micro->lamella;
   r->cohesion = scene->cohesion * own->stress / scales->stress;
   r->turgor = scene->turgor * own->stress / scales->stress;
   PetscCall(LamSceneFill(entry, scales, LamRegion, r));
   PetscCall(CheckTissue(entry, r));
   PetscCall(BuildLamella(entry, scene, &lamella, r));
+  PetscCall(LamSceneCheckTearing(entry, LamNodeFind(entry, "mesh.along"), micro));
   if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
   PetscFunctionReturn(0);
 }

@@ -88,6 +88,7 @@ PetscErrorCode LamChooseMesh(LamScene *scene, LamMeshTrial *trial)
   }
   if (choice.tried) choice.along = PetscMax(choice.along, PetscMin(LamZoneAlong(micro, choice.grading), FINEST_ALONG));
   if (uneven && scene->accuracy <= BODY_ACCURACY) choice.along = PetscMax(choice.along, BODY_ALONG);
+  if (LamWallsTear(micro)) choice.along += choice.along % 2; /* there is a cut in the middle of a face */
   if (micro->grading < 0.0) micro->grading = micro->along ? 0.0 : choice.grading;
   if (!micro->along) micro->along = choice.along;
   if (!micro->through) micro->through = choice.through;

@@ -104,6 +104,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
   micro.cells[0] = micro.cells[1] = 1;
   micro.is_patch = PETSC_FALSE;
   micro.along = mesh.along;
+  micro.tearing = (LamTearing){0}; /* at loads that hardly break anything cuts are closed */
   micro.through = mesh.through;
   micro.grading = Lists[LamCellsPart(micro.interface)].grading;
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &c->rve));

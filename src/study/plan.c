@@ -12,9 +12,10 @@
 #define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
 
-/* Numbers of faces and corners of the outer loops whose nodes are separate unknowns, and of pairs of facing walls. */
+/* Numbers of faces and corners of the outer loops whose nodes are separate unknowns, of pairs of facing walls, and of
+   the nodes that cuts of walls that tear add to outer loops. */
 typedef struct {
-  PetscInt faces, corners, pairs;
+  PetscInt faces, corners, pairs, cuts;
 } Outer;
 
 /* Counts a face of one cell, and the corner at its end, which also belongs to the next face. */
@@ -26,6 +27,7 @@ static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt fa
 
   for (PetscInt k = 0; k < 2; k++) other[k] = LamLatticeNeighbour(micro, cell, (face + k) % LAM_FACES, NULL, &held[k]);
   outer->pairs += other[0] > cell;
+  outer->cuts += !held[0] + !(held[0] && held[1]);
   /* bonded cells share faces and corners: each is counted for its first cell */
   if (!held[0] && !(bonded && other[0] >= 0 && other[0] < cell)) outer->faces++;
   for (PetscInt k = 0; k < 2; k++)
@@ -36,11 +38,12 @@ static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt fa
 static Outer CountOuter(const LamMicrostructure *micro)
 {
   const PetscInt cells = micro->cells[0] * micro->cells[1];
-  Outer outer = {3 * cells, 2 * cells, 3 * cells}; /* of bonded cells in a period; a corner belongs to three */
+  /* of bonded cells in a period; a corner belongs to three */
+  Outer outer = {3 * cells, 2 * cells, 3 * cells, 2 * LAM_FACES * cells};
 
   if (!micro->is_patch && LamCellsPart(micro->interface)) outer.faces = outer.corners = LAM_FACES * cells;
   if (!micro->is_patch) return outer;
-  outer = (Outer){0, 0, 0};
+  outer = (Outer){0};
   for (PetscInt cell = 0; cell < cells; cell++)
     for (PetscInt face = 0; face < LAM_FACES; face++) CountFace(micro, cell, face, &outer);
   return outer;
@@ -52,7 +55,9 @@ static PetscInt CountUnknowns(const LamMicrostructure *micro)
 {
   const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
   const Outer outer = CountOuter(micro);
-  const PetscInt nodes = cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners;
+  const PetscInt cuts = LamWallsTear(micro) ? 2 * LAM_FACES * cells * 2 * micro->through + outer.cuts : 0;
+  const PetscInt nodes =
+      cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners + cuts;
   const PetscInt multipliers = LamCellsPart(micro->interface) ? outer.pairs * (2 * along + 1) : 0;
 
   return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;
