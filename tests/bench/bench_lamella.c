@@ -2,13 +2,14 @@
   How many random programs of tissue whose lamella breaks (support/random_lamella.h) are followed to the end, and at
   what cost; prints figures, asserts nothing.
 
-    bench_lamella [--programs N] [--first K] [--steps N] [--turgor N] [--seed S] [--finer] [--times] [--states]
-  [--monitor]
+    bench_lamella [--programs N] [--first K] [--steps N] [--turgor N] [--seed S] [--walls] [--finer] [--times]
+  [--states] [--monitor]
       --programs N   default 50
       --first K      leaves out the first K programs, so that shares can run apart; default 0
       --steps N      of a program, from F = I; default 20
       --turgor N     the most that walls bear, in t/a (C1 + C2); default 3
       --seed S       of the random numbers; default 1
+      --walls        whose walls tear, too
       --finer        follows each program in four times as many steps, too, and compares peak stress and dissipation
       --times        times of states near failure, against those of tissue with law contact and a cohesion of a tenth of
                      the strength, at least 0.001 MPa, at the same loads
@@ -38,7 +39,7 @@
 typedef struct {
   int count, first, steps;
   double turgor;
-  PetscBool finer, times, states, monitor;
+  PetscBool walls, finer, times, states, monitor;
   uint64_t seed;
 } Options;
 
@@ -274,11 +275,12 @@ static PetscErrorCode CompareFiner(Tissue *t, int number, const RandomLamella *s
 
 static PetscErrorCode RunProgram(int number, const Options *o, Tally *tally)
 {
-  const RandomLamella s = DrawLamella(o->seed, number, o->turgor);
+  RandomLamella s = DrawLamella(o->seed, number, o->turgor);
   static Run run = {0};
   Tissue t;
 
   PetscFunctionBeginUser;
+  if (o->walls) DrawTearing(o->seed, number, &s.micro);
   PetscCall(TissueCreate(&s.micro, LAM_WANT_ALL, &t));
   PetscCall(FindEnd(&t, &s, o->steps, &run));
   PetscCall(CountRun(&run, number - o->first, tally));
@@ -447,6 +449,7 @@ int main(int argc, char **argv)
                 .steps = NumberOption("--steps", 20, 1, MOST_STEPS / FINER),
                 .turgor = NumberOption("--turgor", 3, 0, PETSC_MAX_INT),
                 .seed = (uint64_t)NumberOption("--seed", 1, 0, PETSC_MAX_INT),
+                .walls = HasOption("--walls"),
                 .finer = HasOption("--finer"),
                 .times = HasOption("--times"),
                 .states = HasOption("--states"),

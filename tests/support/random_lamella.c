@@ -60,6 +60,18 @@ RandomLamella DrawLamella(uint64_t seed, int number, double most_turgor)
   return s;
 }
 
+void DrawTearing(uint64_t seed, int number, LamMicrostructure *micro)
+{
+  LamTearing *tearing = &micro->tearing;
+
+  seed = SeedOf(~seed, number);
+  tearing->strength = RandomMagnitude(&seed, 0.5, 5.0);
+  tearing->energy = 0.5 * tearing->strength * micro->wall_thickness * RandomMagnitude(&seed, 0.03, 3.0);
+  tearing->stiffness = LamTearingDefaultStiffness(micro);
+  micro->sharpness = LAM_SHARPNESS_SMOOTH;
+  micro->contact_width = LAM_USUAL_WIDTH;
+}
+
 LamLoad LamellaProgramLoad(const RandomLamella *sample, double strain)
 {
   switch (sample->program) {

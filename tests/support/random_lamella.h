@@ -32,6 +32,8 @@ typedef struct {
 
 /* Tissue `number`, which depends on no other. most_turgor: in t/a (C1 + C2). */
 RandomLamella DrawLamella(uint64_t seed, int number, double most_turgor);
+/* Walls that tear at 0.5 to 5 (C1 + C2), over an opening of 0.03 to 3 thicknesses; contact is then smooth. */
+void DrawTearing(uint64_t seed, int number, LamMicrostructure *micro);
 /* The load of its program at a strain. */
 LamLoad LamellaProgramLoad(const RandomLamella *sample, double strain);
 
