@@ -127,9 +127,8 @@ LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
 /* The stiffness where none is given: the lamella costs 0.08 % of the tissue's stiffness, or less where 50 times the least
    stiffness is more; at most the stiffest. */
 LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
-/* The same of the cuts across walls that tear, of which a face has two, one in the middle and half of those at its ends:
-   least stiffness strength^2/(2 energy), and the one where none is given, at the same price of the stiffness of walls
-   along themselves, E'. */
+/* The same of the cuts across walls that tear: least stiffness strength^2/(2 energy), and the one where none is given, at
+   the same price of the stiffness of walls in bending. */
 LAM_EXPORT PetscReal LamTearingLeastStiffness(const LamTearing *tearing);
 LAM_EXPORT PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro);
 LAM_EXPORT PetscReal LamTearingCompliance(const LamMicrostructure *micro); /* that price */

@@ -101,16 +101,20 @@ PetscReal LamTearingLeastStiffness(const LamTearing *tearing)
   return 0.5 * Brittleness(tearing->strength, tearing->energy);
 }
 
-/* Share of the stiffness of walls along themselves that their cuts cost, times the stiffness of these. */
+/*
+  Share of the stiffness of walls that their cuts cost, times the stiffness of these. A face of length l has one cut in
+  its middle and half of one at each end: in tension they add 2 E'/(k l) to its compliance. Bent by a moment that changes
+  its sign in the middle, where that cut is, the ends add 1 over a mean square of 1/3, 3 E'/(k l).
+*/
 static PetscReal CutPriceTimesStiffness(const LamMicrostructure *micro)
 {
   const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
-  const PetscReal between = 1.0 / sqrt(3.0); /* cuts, apothems */
+  const PetscReal length = 2.0 / sqrt(3.0);
   PetscReal stiffest = 0.0;
 
   for (PetscInt c = 0; c < cells; c++)
     stiffest = PetscMax(stiffest, ModulusAlong(micro->cell ? &micro->cell[c].wall : &micro->wall));
-  return stiffest / between;
+  return 3.0 * stiffest / length;
 }
 
 PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro)

@@ -29,8 +29,11 @@
 /* Those of law `lamella`. */
 #define LAMELLA_COLUMNS(X)                                                                                             \
   X("broken_fraction", r->broken_fraction)                                                                             \
+  X("burst_fraction", r->burst_fraction)                                                                               \
+  X("juice", r->juice)                                                                                                 \
   X("stored (kJ/m^3)", (r->stored) * MPa * 1e3)                                                                        \
   X("dissipated (kJ/m^3)", (r->dissipated) * MPa * 1e3)                                                                \
+  X("dissipated_walls (kJ/m^3)", (r->dissipated_walls) * MPa * 1e3)                                                    \
   X("released (kJ/m^3)", (r->released) * MPa * 1e3)
 #define CURVE_COLUMNS(X)                                                                                               \
   X("strain", p->strain)                                                                                               \

@@ -11,7 +11,7 @@ expect 0 "$lamella" rve scene.yaml --no-estimate --json -o torn.h5
 for name in broken_fraction broken_by_face stored dissipated released; do
   [ "$(grep -c "\"$name\":" out.txt)" -eq 5 ] || fail "no member $name"
 done
-head -1 torn.csv | grep -qF 'broken_fraction,stored (kJ/m^3),dissipated (kJ/m^3),released (kJ/m^3)' || fail "$(head -1 torn.csv)"
+head -1 torn.csv | grep -qF 'broken_fraction,burst_fraction,juice,stored (kJ/m^3),dissipated (kJ/m^3),dissipated_walls (kJ/m^3),released (kJ/m^3)' || fail "$(head -1 torn.csv)"
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
   /usr/bin/python3 - <<'PYTHON' || fail "the file is not what docs/reference/files.md says"
 import h5py, numpy as np

@@ -2,46 +2,12 @@
 #include "support/lamella_tissue.h"
 #include "support/random_lamella.h"
 #include "support/rve_fixture.h"
+#include "support/step_tangent.h"
 #include "solve.h"
 
 static const int components[5] = {0, 1, 3, 4, 8};
 
 /* ---- tangent ---- */
-
-/* From the same history: fourth-order differences of the stress against the tangent, and the tangent's symmetry. */
-static void CheckTangent(Specimen *s, const LamLoad *load)
-{
-  const double h = 1e-5;
-  OWNED(LamRVEState, LamRVEStateDestroy) end = NewState(s->rve);
-  LamResponse r, q;
-  double largest = 0.0;
-
-  CHECK(LamRVEStateCopy(s->state, end));
-  CHECK(LamRVESolve(s->rve, load, end, &r));
-  assert_int_equal(r.status, LAM_CONVERGED);
-  for (int k = 0; k < 5; k++) largest = fmax(largest, fabs(r.tangent[10 * components[k]]));
-  for (int k = 0; k < 5; k++) {
-    double difference[9] = {0};
-
-    for (int m = -2; m <= 2; m++) {
-      const double weight[5] = {1.0 / 12, -8.0 / 12, 0, 8.0 / 12, -1.0 / 12};
-      LamLoad moved = *load;
-
-      if (m == 0) continue;
-      moved.F[components[k]] += m * h;
-      CHECK(LamRVEStateCopy(s->state, end));
-      CHECK(LamRVESolve(s->rve, &moved, end, &q));
-      assert_int_equal(q.status, LAM_CONVERGED);
-      for (int i = 0; i < 9; i++) difference[i] += weight[m + 2] * q.P[i] / h;
-    }
-    for (int l = 0; l < 5; l++) {
-      const double entry = r.tangent[9 * components[l] + components[k]];
-
-      assert_near(difference[components[l]], entry, 1e-6 * largest);
-      assert_near(r.tangent[9 * components[k] + components[l]], entry, 1e-10 * largest);
-    }
-  }
-}
 
 static void FollowAndCheck(LamSoftening softening, double shear_energy, double turgor)
 {
@@ -58,14 +24,14 @@ static void FollowAndCheck(LamSoftening softening, double shear_energy, double t
   load = PlaneLoad(1.003, 0.002, 0, 1.006, turgor);
   CHECK(SpecimenFollow(&s, &load, 1, &work));
   load = PlaneLoad(1.004, 0.002, 0, 1.007, turgor); /* undamaged */
-  CheckTangent(&s, &load);
+  CheckStepTangent(&s, &load);
   load = PlaneLoad(1.03, 0.015, 0, 1.06, turgor); /* on the softening branch */
   CHECK(SpecimenFollow(&s, &load, 5, &work));
   assert_true(s.response.dissipated > 1e-4);
   load = PlaneLoad(1.0307, 0.0153, 0, 1.0615, turgor);
-  CheckTangent(&s, &load);
+  CheckStepTangent(&s, &load);
   load = PlaneLoad(1.02, 0.01, 0.01, 1.05, turgor); /* unloading */
-  CheckTangent(&s, &load);
+  CheckStepTangent(&s, &load);
   CHECK(SpecimenDestroy(&s));
 }
 
