@@ -69,12 +69,11 @@ PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamBodySetWalls(LamBody body,
-                               PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
-                               void *ctx)
+PetscErrorCode LamBodySetTissue(LamBody body, PetscErrorCode (*set)(void *ctx, const LamTissueFactors *factors),
+                                void *ctx)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamProcessSetWalls(body->process, set, ctx));
+  PetscCall(LamProcessSetTissue(body->process, set, ctx));
   PetscFunctionReturn(0);
 }
 

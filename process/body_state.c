@@ -9,18 +9,18 @@ PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[],
 {
   LamProcess process = body->process;
   LamEvaluation *now = &body->now;
-  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
+  LamTissueFactors factors;
 
   PetscFunctionBeginUser;
-  LamProcessProperties(process, time, x, now, ratio);
+  LamProcessProperties(process, time, x, now, &factors);
   *ok = (PetscBool)(now->walls > 0 && isfinite(now->walls));
   if (!*ok) {
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
-  if (!process->walls_alike && memcmp(process->passed_walls, ratio, sizeof(ratio)))
+  if (process->changes_tissue && memcmp(&process->passed, &factors, sizeof(factors)))
     PetscCall(LamMacroForget(body->macro));
-  PetscCall(LamProcessPassWalls(process, ratio));
+  PetscCall(LamProcessPassTissue(process, &factors));
   if (process->spec->has_water) LamBodyDrives(body);
   PetscFunctionReturn(0);
 }

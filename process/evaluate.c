@@ -16,11 +16,25 @@
 
 /* ---- properties ---- */
 
+PetscReal LamProcessTissueFactors(const LamScene *scene, const PetscReal factor[LAM_CHANGING_COUNT],
+                                  LamTissueFactors *factors)
+{
+  const PetscReal walls = factor[LAM_CHANGING_WALLS] *
+                          LamWallRatios(&scene->micro.wall, &factor[LAM_CHANGING_OF_PARAMETER(0)], factors->walls);
+
+  factors->lamella = factor[LAM_CHANGING_LAMELLA];
+  factors->wall_strength = factor[LAM_CHANGING_WALL_STRENGTH];
+  if (scene->micro.interface != LAM_INTERFACE_LAMELLA) return walls;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (LamWallParameterIsModulus(k)) factors->walls[k] *= walls;
+  return 1;
+}
+
 void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *e,
-                          PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
+                          LamTissueFactors *factors)
 {
   const PetscReal elapsed = time - process->segment.start;
-  PetscReal walls[LAM_WALL_PARAMETER_COUNT];
+  PetscReal factor[LAM_CHANGING_COUNT], ratio[LAM_WALL_PARAMETER_COUNT];
 
   e->time = time;
   e->temperature = LamRampAt(&process->segment.temperature, elapsed);
@@ -28,8 +42,10 @@ void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[
   for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++)
     e->factor[k].value =
         LamKineticsFactor(&process->spec->kinetics[k], time, &x[LAM_KINETIC_STATES * k], e->factor[k].slope);
-  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) walls[k] = e->factor[LAM_CHANGING_OF_PARAMETER(k)].value;
-  e->walls = e->factor[LAM_CHANGING_WALLS].value * LamWallRatios(&process->scene->micro.wall, walls, ratio);
+  for (PetscInt k = 0; k < LAM_CHANGING_COUNT; k++) factor[k] = e->factor[k].value;
+  e->walls = factor[LAM_CHANGING_WALLS] *
+             LamWallRatios(&process->scene->micro.wall, &factor[LAM_CHANGING_OF_PARAMETER(0)], ratio);
+  e->unit = LamProcessTissueFactors(process->scene, factor, factors);
   e->cohesion = process->scene->cohesion * e->factor[LAM_CHANGING_LAMELLA].value;
 }
 
@@ -57,17 +73,16 @@ static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
 {
   const LamLoad *a = &process->last.load, *b = &e->load;
 
-  return (PetscBool)(process->last_known && process->last_scale == e->walls && a->turgor == b->turgor &&
+  return (PetscBool)(process->last_known && process->last_unit == e->unit && a->turgor == b->turgor &&
                      a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
 }
 
-PetscErrorCode LamProcessPassWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT])
+PetscErrorCode LamProcessPassTissue(LamProcess process, const LamTissueFactors *factors)
 {
   PetscFunctionBeginUser;
-  if (process->walls_alike || !memcmp(process->passed_walls, ratio, sizeof(process->passed_walls)))
-    PetscFunctionReturn(0);
-  PetscCall(process->set_walls(process->walls_ctx, ratio));
-  PetscCall(PetscArraycpy(process->passed_walls, ratio, LAM_WALL_PARAMETER_COUNT));
+  if (!process->changes_tissue || !memcmp(&process->passed, factors, sizeof(process->passed))) PetscFunctionReturn(0);
+  PetscCall(process->set_tissue(process->tissue_ctx, factors));
+  process->passed = *factors;
   process->last_known = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
@@ -80,11 +95,11 @@ static PetscErrorCode QueryResponder(LamProcess process, LamResponder responder,
   LamLoad own = e->load;
 
   PetscFunctionBeginUser;
-  own.turgor /= e->walls;
-  own.cohesion /= e->walls;
+  own.turgor /= e->unit;
+  own.cohesion /= e->unit;
   PetscCall(LamResponderRespond(responder, 1, &own, &point, response));
   process->counts.questions++;
-  LamResponseScale(e->walls, response);
+  LamResponseScale(e->unit, response);
   response->load = e->load;
   PetscFunctionReturn(0);
 }
@@ -93,10 +108,10 @@ PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *e)
 {
   PetscFunctionBeginUser;
   if (!process->reference || !e->ok || e->response.indicators_trusted) PetscFunctionReturn(0);
-  if (!process->reference_response_known || process->reference_response_scale != e->walls ||
+  if (!process->reference_response_known || process->reference_response_unit != e->unit ||
       memcmp(&process->reference_response.load, &e->load, sizeof(LamLoad)))
     PetscCall(QueryResponder(process, process->reference, e, &process->reference_response));
-  process->reference_response_scale = e->walls;
+  process->reference_response_unit = e->unit;
   process->reference_response_known = LamResponseHasFields(&process->reference_response);
   if (process->reference_response_known) e->response = process->reference_response;
   PetscFunctionReturn(0);
@@ -105,10 +120,10 @@ PetscErrorCode LamProcessQueryReference(LamProcess process, LamEvaluation *e)
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *e)
 {
-  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
+  LamTissueFactors factors;
 
   PetscFunctionBeginUser;
-  LamProcessProperties(process, time, x, e, ratio);
+  LamProcessProperties(process, time, x, e, &factors);
   e->load.turgor = turgor;
   e->load.cohesion = e->cohesion;
   Multiply(F, process->inflation, e->load.F);
@@ -118,7 +133,7 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
     PetscCall(PetscStrncpy(process->trouble, "nothing is left of the walls", sizeof(process->trouble)));
     PetscFunctionReturn(0);
   }
-  PetscCall(LamProcessPassWalls(process, ratio));
+  PetscCall(LamProcessPassTissue(process, &factors));
   if (SameQuestion(process, e)) {
     e->response = process->last.response;
     e->ok = process->last.ok;
@@ -130,8 +145,20 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
     PetscCall(PetscSNPrintf(process->trouble, sizeof(process->trouble), "%s: %.150s",
                             LamStatusNames[e->response.status], e->response.reason));
   process->last = *e;
-  process->last_scale = e->walls;
+  process->last_unit = e->unit;
   process->last_known = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamProcessAccept(LamProcess process)
+{
+  const LamProcessTissue *tissue = &process->tissue;
+  LamEvaluation e;
+
+  PetscFunctionBeginUser;
+  if (process->has_history)
+    PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
+  PetscCall(LamResponderAccept(process->responder));
   PetscFunctionReturn(0);
 }
 

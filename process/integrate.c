@@ -180,6 +180,7 @@ static void AddProperties(const Integration *in, const LamEvaluation *e, PetscIn
   const LamWall *wall = &in->process->scene->micro.wall; /* C1 + C2 is the common factor */
   const PetscReal common = e->factor[LAM_CHANGING_WALLS].value;
 
+  if (in->process->has_history) by_walls = 0; /* not known: walls change, and the lamella does not change with them */
   AddFactor(in, e, LAM_CHANGING_LAMELLA, row, by_cohesion * in->process->scene->cohesion, K);
   AddFactor(in, e, LAM_CHANGING_WALLS, row, by_walls * e->walls / common, K);
   AddFactor(in, e, LAM_CHANGING_C1, row, by_walls * common * wall->C1, K);
@@ -380,15 +381,18 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   PetscReal t = process->segment.start;
 
   PetscFunctionBeginUser;
-  while (flag == IDA_SUCCESS && !process->stopped) {
+  if (process->has_history) PetscCall(ReportUpTo(in, t));
+  while ((flag == IDA_SUCCESS || flag == IDA_TSTOP_RETURN) && !process->stopped) {
     process->trouble[0] = '\0';
+    if (process->has_history) /* a state in between would be of another history */
+      LamCallSUN(IDASetStopTime(in->base.ida, PetscMin(process->next_output, process->segment.end)));
     flag = IDASolve(in->base.ida, process->segment.end, &t, in->base.y, in->base.yp, IDA_ONE_STEP);
     PetscCall(process->error);
     if (flag < 0) break;
     process->counts.steps++;
-    PetscCall(LamResponderAccept(process->responder));
-    PetscCall(ReportUpTo(in, t));
     process->tissue = Unpack(in, t, in->base.y);
+    PetscCall(LamProcessAccept(process));
+    PetscCall(ReportUpTo(in, t));
     if (t >= process->segment.end) break;
   }
   *ok = (PetscBool)(flag >= 0 && !process->stopped);

@@ -59,7 +59,8 @@ PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)
   PetscCall(PetscNew(process));
   (*process)->scene = scene;
   (*process)->spec = &scene->process;
-  (*process)->walls_alike = LamProcessWallsStayAlike(scene);
+  (*process)->has_history = (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA);
+  (*process)->changes_tissue = (PetscBool)((*process)->has_history || !LamProcessWallsStayAlike(scene));
   (*process)->cells.membrane = LamMembraneArea(&scene->micro);
   PetscFunctionReturn(0);
 }
@@ -78,13 +79,12 @@ PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamProcessSetWalls(LamProcess process,
-                                  PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]),
-                                  void *ctx)
+PetscErrorCode LamProcessSetTissue(LamProcess process,
+                                   PetscErrorCode (*set)(void *ctx, const LamTissueFactors *factors), void *ctx)
 {
   PetscFunctionBeginUser;
-  process->set_walls = set;
-  process->walls_ctx = ctx;
+  process->set_tissue = set;
+  process->tissue_ctx = ctx;
   PetscFunctionReturn(0);
 }
 
@@ -345,6 +345,22 @@ static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
+/* Tissue with a history under stress that has no equilibrium next to it any more, at once or a moment later, has
+   reached the limit of what it bears: the event that ends the process. Its tangent does not tell, as it jumps between
+   loading and unloading. */
+static PetscErrorCode FindLimit(LamProcess process, PetscBool *ok, PetscBool *ends)
+{
+  PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
+
+  PetscFunctionBeginUser;
+  if (*ok || process->stopped || !process->has_history) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < 9; i++)
+    if (process->segment.given[i]) happened[LAM_EVENT_LIMIT] = PETSC_TRUE;
+  *ok = happened[LAM_EVENT_LIMIT];
+  PetscCall(Happen(process, happened, ends));
+  PetscFunctionReturn(0);
+}
+
 /* One segment, or the part of it up to an event. */
 static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool *ends)
 {
@@ -354,11 +370,13 @@ static PetscErrorCode FollowSegment(LamProcess process, PetscBool *ok, PetscBool
   PetscFunctionBeginUser;
   LamProcessNextSegment(process, &process->segment);
   PetscCall(EnterSegment(process, ok));
-  if (*ok) PetscCall(CheckEvents(process, ends));
+  PetscCall(FindLimit(process, ok, ends));
+  if (*ok && !*ends) PetscCall(CheckEvents(process, ends));
   if (!*ok || *ends) PetscFunctionReturn(0);
   if (process->segment.end > process->segment.start) PetscCall(LamProcessIntegrate(process, happened, ok));
   if (!*ok && !process->stopped) PetscCall(Snap(process, ok));
-  if (!*ok) PetscFunctionReturn(0);
+  PetscCall(FindLimit(process, ok, ends));
+  if (!*ok || *ends) PetscFunctionReturn(0);
   PetscCall(Happen(process, happened, ends));
   PetscCall(EvaluateTissue(process, &e));
   LamProcessEndSegment(process, e.response.P);
@@ -442,6 +460,8 @@ static const char *WhyItEnds(LamProcess process, PetscBool limit)
   const PetscBool contact = LamCellsPart(process->scene->micro.interface);
 
   if (!limit) return process->trouble;
+  if (process->has_history)
+    return "limit point: the tissue does not bear its stress any more, no equilibrium is found next to the last one";
   return contact && LamResponderGetCounters(process->responder).interpolated
              ? "limit point: nothing is left of the stiffness against what is free, as a database sees it; next to a "
                "loss of contact its tangent may be wrong: solve directly to be sure"

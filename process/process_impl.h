@@ -52,10 +52,11 @@ typedef struct {
 typedef struct {
   PetscReal time, temperature, outside;
   LamProcessFactor factor[LAM_CHANGING_COUNT];
-  PetscReal walls, cohesion;
-  LamLoad load;         /* total F, turgor, cohesion */
-  LamResponse response; /* in units of C1 + C2 at the start */
-  PetscBool ok;         /* the response has fields */
+  PetscReal walls, cohesion; /* walls: C1 + C2 over that at the start */
+  PetscReal unit;            /* of the responder's stresses, C1 + C2 at the start: `walls`, or 1 with a history */
+  LamLoad load;              /* total F, turgor, cohesion */
+  LamResponse response;      /* in units of C1 + C2 at the start */
+  PetscBool ok;              /* the response has fields */
 } LamEvaluation;
 
 /* The flow of water into the cells per V0 and time, and its derivatives. */
@@ -76,15 +77,16 @@ struct LamProcess_s {
   const LamProcessSpec *spec;
   LamResponder responder; /* borrowed */
   LamResponder reference; /* borrowed; NULL: none */
-  PetscErrorCode (*set_walls)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
-  void *walls_ctx; /* borrowed */
-  PetscReal passed_walls[LAM_WALL_PARAMETER_COUNT];
+  PetscErrorCode (*set_tissue)(void *ctx, const LamTissueFactors *factors);
+  void *tissue_ctx;        /* borrowed */
+  LamTissueFactors passed; /* last ones */
   LamProcessMonitor monitor;
   void *monitor_ctx; /* borrowed */
   PetscBool (*stop)(void);
 
-  PetscBool walls_alike;
-  PetscReal inflation[9]; /* F of the stress-free tissue under its turgor at the start */
+  PetscBool changes_tissue; /* responses are of tissue that changes by more than a common factor of its walls */
+  PetscBool has_history;    /* law `lamella`: responses are of the states accepted before, in C1 + C2 of the start */
+  PetscReal inflation[9];   /* F of the stress-free tissue under its turgor at the start */
   LamCells cells;
   PetscReal temperature, opening; /* at the start */
 
@@ -99,12 +101,12 @@ struct LamProcess_s {
   PetscReal leg_start, leg_F[9], leg_P[9], leg_load; /* state at which the present part began */
   PetscBool found[LAM_EVENT_COUNT];                  /* events that are no longer searched for */
   PetscReal next_output;
-  LamEvaluation last;   /* last evaluation for which the responder was queried */
-  PetscReal last_scale; /* wall factor of that evaluation */
+  LamEvaluation last;  /* last evaluation for which the responder was queried */
+  PetscReal last_unit; /* of that evaluation */
   PetscBool last_known;
   LamResponse reference_response; /* last one of the reference responder, valid if reference_response_known */
   PetscBool reference_response_known;
-  PetscReal reference_response_scale;
+  PetscReal reference_response_unit;
   PetscBool stopped;
   PetscErrorCode error; /* of the library, raised inside IDA */
   char trouble[192];    /* why a state has no response */
@@ -145,13 +147,15 @@ void LamProcessNextSegment(LamProcess process, LamSegment *segment);
 void LamProcessEndSegment(LamProcess process, const PetscReal P[9]);
 
 /* evaluate.c */
-/* Sets all of `evaluation` except load and response, at a time of the present segment. ratio: moduli C1, C2, C4
-   relative to the start, without their common factor. */
+/* Sets all of `evaluation` except load and response, at a time of the present segment. factors: those of the tissue in
+   the evaluation's unit. */
 void LamProcessProperties(LamProcess process, PetscReal time, const PetscReal x[], LamEvaluation *evaluation,
-                          PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
-/* Passes changed ratios of the moduli to set_walls, if moduli do not change by a common factor. A new ratio invalidates
-   the stored response. */
-PetscErrorCode LamProcessPassWalls(LamProcess process, const PetscReal ratio[LAM_WALL_PARAMETER_COUNT]);
+                          LamTissueFactors *factors);
+/* Passes changed factors to set_tissue, if more changes than the unit. They invalidate the stored response. */
+PetscErrorCode LamProcessPassTissue(LamProcess process, const LamTissueFactors *factors);
+/* Accepts the responder's states at the present state of the tissue, at which it is queried once more if it has a
+   history: the last query may have been another. */
+PetscErrorCode LamProcessAccept(LamProcess process);
 /* Properties and response at a time of the present segment; evaluation->ok: the response has fields. */
 PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const PetscReal x[], const PetscReal F[9],
                                   PetscReal turgor, LamEvaluation *evaluation);

@@ -206,7 +206,7 @@ PetscErrorCode LamProcessBegin(LamProcess process)
   LamProcessTissue *tissue = &process->tissue;
 
   PetscFunctionBeginUser;
-  PetscCheck(process->walls_alike || process->set_walls, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(!process->changes_tissue || process->set_tissue, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: process.kinetics: the parameters of the walls do not change alike, and the source of responses knows "
              "only tissue "
              "whose walls keep their proportions; solve directly",
@@ -217,7 +217,8 @@ PetscErrorCode LamProcessBegin(LamProcess process)
   for (int i = 0; i < 9; i++) process->inflation[i] = i % 4 == 0 ? 1 : 0;
   process->plasmolysed = process->stopped = process->last_known = process->reference_response_known = PETSC_FALSE;
   for (PetscInt k = 0; k < LAM_EVENT_COUNT; k++) process->found[k] = PETSC_FALSE;
-  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->passed_walls[k] = 1;
+  process->passed = (LamTissueFactors){.lamella = 1, .wall_strength = 1};
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->passed.walls[k] = 1;
   process->next_output = 0;
   process->snaps = 0;
   process->counts = (LamProcessCounts){0};

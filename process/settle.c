@@ -191,5 +191,6 @@ PetscErrorCode LamProcessSettle(LamProcess process, LamSettle kind, const LamSeg
     if (process->stopped || step < PetscPowRealInt(0.5, MAX_HALVINGS) || ++tries > MAX_TRIES) break;
   }
   if (!*ok) process->tissue = start;
+  if (*ok && process->has_history) PetscCall(LamProcessAccept(process));
   PetscFunctionReturn(0);
 }

@@ -48,9 +48,10 @@ LAM_EXPORT PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, L
 LAM_EXPORT PetscErrorCode LamBodySetMembranes(LamBody body, const PetscReal membrane[]);
 /* Membrane area over V0 of a tissue, in 1 over its own apothem. */
 LAM_EXPORT PetscReal LamMembraneArea(const LamMicrostructure *micro);
-/* As LamProcessSetWalls. */
-LAM_EXPORT PetscErrorCode LamBodySetWalls(
-    LamBody body, PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]), void *ctx);
+/* As LamProcessSetTissue. */
+LAM_EXPORT PetscErrorCode LamBodySetTissue(LamBody body,
+                                           PetscErrorCode (*set)(void *ctx, const LamTissueFactors *factors),
+                                           void *ctx);
 LAM_EXPORT PetscErrorCode LamBodySetMonitor(LamBody body, LamBodyMonitor monitor, void *ctx);
 /* Integrates from time 0; LamMacroSetStop can stop it. `message`: why it ended early. Collective. */
 LAM_EXPORT PetscErrorCode LamBodyRun(LamBody body, LamProcessReason *reason, char message[LAM_PROCESS_MESSAGE]);

@@ -35,7 +35,8 @@ typedef struct {
 /* Walls that tear across, by the same law with bilinear softening, in shear as in tension; a cell that is torn bursts.
    Strength 0: they do not. */
 typedef struct {
-  PetscReal strength, energy, stiffness; /* nominal tension, energy per area of the cut at rest, traction over opening */
+  PetscReal strength, energy,
+      stiffness; /* nominal tension, energy per area of the cut at rest, traction over opening */
 } LamTearing;
 
 /* A lamella without variation: all factors 1, shear as tension, no junctions. */

@@ -84,13 +84,23 @@ LAM_EXPORT PetscErrorCode LamProcessSetResponder(LamProcess process, LamResponde
   events and output. Borrows it; NULL: such responses are used and reported as not trusted.
 */
 LAM_EXPORT PetscErrorCode LamProcessSetReferenceResponder(LamProcess process, LamResponder reference);
+/* Properties over their values at the start. */
+typedef struct {
+  PetscReal walls[LAM_WALL_PARAMETER_COUNT];
+  PetscReal lamella, wall_strength; /* of strengths and energies of the lamella and of walls that tear */
+} LamTissueFactors;
+/* Of a tissue at factors of what changes. Returns the unit of its stresses, in C1 + C2 at the start: its own C1 + C2,
+   and factors->walls is without that common factor; with law `lamella` 1. */
+LAM_EXPORT PetscReal LamProcessTissueFactors(const LamScene *scene, const PetscReal factor[LAM_CHANGING_COUNT],
+                                             LamTissueFactors *factors);
 /*
-  Sets the callback for walls whose moduli do not change by a common factor: before queries `set` receives each
-  parameter over its initial value, moduli without the common factor. Without it such a process is
-  PETSC_ERR_USER_INPUT.
+  Sets the callback for walls whose moduli do not change by a common factor, and for tissue with law `lamella`: before
+  queries `set` receives the factors; without a lamella, moduli without the common factor. Without the callback such a
+  process is PETSC_ERR_USER_INPUT.
 */
-LAM_EXPORT PetscErrorCode LamProcessSetWalls(
-    LamProcess process, PetscErrorCode (*set)(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]), void *ctx);
+LAM_EXPORT PetscErrorCode LamProcessSetTissue(LamProcess process,
+                                              PetscErrorCode (*set)(void *ctx, const LamTissueFactors *factors),
+                                              void *ctx);
 LAM_EXPORT PetscErrorCode LamProcessSetMonitor(LamProcess process, LamProcessMonitor monitor, void *ctx);
 /* Called after each step of the integrator; NULL: never. */
 LAM_EXPORT PetscErrorCode LamProcessSetStop(LamProcess process, PetscBool (*stop)(void));

@@ -66,10 +66,11 @@ LAM_EXPORT PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; symbolic factorisation takes place in the first solve. */
 LAM_EXPORT PetscErrorCode LamRVESetUp(LamRVE rve);
 /*
-  Changes the moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up; `micro` is otherwise
-  unchanged. Existing states remain valid as initial guesses.
+  Changes the moduli (C1, C2, C4 and bulk modulus) of the walls of an RVE that is set up, and strengths and energies of
+  its lamella and of walls that tear; `micro` is otherwise unchanged. Existing states remain valid as initial guesses;
+  their history is the integrity of each point of the lamella, the share of its stiffness that is left.
 */
-LAM_EXPORT PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro);
+LAM_EXPORT PetscErrorCode LamRVEChangeTissue(LamRVE rve, const LamMicrostructure *micro);
 LAM_EXPORT PetscErrorCode LamRVEDestroy(LamRVE *rve);
 
 /* Creates a state at F = I without turgor: the stress-free reference. */
@@ -104,9 +105,9 @@ LAM_EXPORT PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, cons
    scale of the mesh, and the error estimate of bonded tissue is increased and a guess. */
 #define LAM_KINKED_SHARE 0.005
 
-/* Solves the load of `from`, a state of `rve` with a solution, on another mesh of the same tissue, from the interpolated
-   solution. LAM_NOT_CONVERGED if Newton's method does not converge from there: the branch of `from` is another one or
-   has ended on that mesh. `state` belongs to `finer`. Not for sealed cells. */
+/* Solves the load of `from`, a state of `rve` with a solution, on another mesh of the same tissue, from the
+   interpolated solution. LAM_NOT_CONVERGED if Newton's method does not converge from there: the branch of `from` is
+   another one or has ended on that mesh. `state` belongs to `finer`. Not for sealed cells. */
 LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE finer, LamRVEState state,
                                            LamResponse *response);
 
@@ -114,8 +115,8 @@ LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE 
   Estimates the error of a state's P, as LamWholeError, from the same load on a mesh with half as many
   elements again along the faces and through the walls. It costs three to four times a bonded state, twice a contact
   state. LamRVEEstimateError sets response->error_estimate of the response that belongs to `state`, and adds its time.
-  The estimate is NaN for sealed cells and where the finer mesh has no state near. With a lamella it solves all states of
-  a program on its own mesh: call it for each of them, in order, from the first one. Borrows `rve`.
+  The estimate is NaN for sealed cells and where the finer mesh has no state near. With a lamella it solves all states
+  of a program on its own mesh: call it for each of them, in order, from the first one. Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

@@ -24,23 +24,18 @@ static void PlaceNode(const LamMesh *mesh, PetscInt node, const PetscReal *image
   for (PetscInt d = 0; d < 2; ++d) edge->shift[k][d] = mesh->shift[2 * node + d] + (image ? image[d] : 0.0);
 }
 
-static void SetPoint(LamLayer *layer, PetscInt point, PetscReal length, const LamCohesive *law, PetscReal V0,
-                     PetscReal *toughness)
+static void SetWeights(LamLayer *layer, PetscInt edge)
 {
-  layer->bond[point].law = *law;
-  layer->weight[point] = LamEdgeWeight(point % LAM_EDGE_POINTS) * length;
-  *toughness += layer->weight[point] * LamEnvelopeOf(law, 0.0).energy / V0;
+  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q)
+    layer->weight[LAM_EDGE_POINTS * edge + q] = LamEdgeWeight(q) * layer->nodes[edge].length;
 }
 
 /* Edge e of a face: its nodes counter-clockwise around the slave. */
-static void SetFaceEdge(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact, PetscInt edge,
-                        LamLayer *layer)
+static void SetFaceEdge(const LamMesh *mesh, const LamContact *contact, PetscInt edge, LamLayer *layer)
 {
   const LamContactFace *of = &contact->faces[edge / mesh->along];
   const PetscInt e = edge % mesh->along;
-  const PetscReal face = LamFaceLength(mesh);
   LamEdgeNodes *nodes = &layer->nodes[edge];
-  PetscReal strength, energy;
 
   nodes->length = contact->J0[e];
   for (PetscInt k = 0; k < 3; ++k) {
@@ -51,39 +46,59 @@ static void SetFaceEdge(const LamMicrostructure *micro, const LamMesh *mesh, con
     PlaceNode(mesh, LamMeshNode(mesh, of->other, LamMeshRing(mesh, column[1], 2 - k), mesh->radial_nodes - 1),
               of->shift, 3 + k, nodes);
   }
-  (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
-  if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
-  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
-    const PetscReal at = face * LamMeshShare(mesh, (PetscReal)e + LamEdgePlace(q));
-    const PetscBool junction = (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length);
-    const LamCohesive law = LawAt(&micro->lamella, strength, energy, junction);
-
-    SetPoint(layer, LAM_EDGE_POINTS * edge + q, nodes->length, &law, mesh->V0, &layer->toughness[0]);
-  }
+  SetWeights(layer, edge);
 }
 
 /* Edge m of a cut, from the lumen: the slave is the part before the cut, whose outside is to the right inwards. */
-static void SetCutEdge(const LamTearing *tearing, const LamMesh *mesh, PetscInt cut, PetscInt m, LamLayer *layer)
+static void SetCutEdge(const LamMesh *mesh, PetscInt cut, PetscInt m, LamLayer *layer)
 {
-  const LamCohesive law = {.softening = LAM_SOFTENING_BILINEAR,
-                           .stiffness = tearing->stiffness,
-                           .strength = tearing->strength,
-                           .beta = 1.0,
-                           .energy = {tearing->energy, tearing->energy},
-                           .mixing = 1.0};
-  const PetscInt first = layer->between + LAM_EDGE_POINTS * (cut * mesh->through + m), ends[2] = {2 * m + 2, 2 * m};
-  LamEdgeNodes *nodes = &layer->nodes[EdgeOf(first)];
+  const PetscInt edge = EdgeOf(layer->between) + cut * mesh->through + m;
+  LamEdgeNodes *nodes = &layer->nodes[edge];
   PetscInt side[3][2];
 
   for (PetscInt k = 0; k < 3; ++k) {
-    LamMeshCut(mesh, cut, ends[0] - k, side[k]);
+    LamMeshCut(mesh, cut, 2 * m + 2 - k, side[k]);
     for (PetscInt s = 0; s < 2; ++s) PlaceNode(mesh, side[k][s], NULL, 3 * s + k, nodes);
   }
   nodes->length = PetscSqrtReal(PetscSqr(mesh->X[2 * side[0][0]] - mesh->X[2 * side[2][0]]) +
                                 PetscSqr(mesh->X[2 * side[0][0] + 1] - mesh->X[2 * side[2][0] + 1]));
-  for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
-    SetPoint(layer, first + q, nodes->length, &law, mesh->V0, &layer->toughness[1]);
-    layer->bond[first + q].closes = PETSC_TRUE;
+  SetWeights(layer, edge);
+}
+
+static LamCohesive LawOfFace(const LamMicrostructure *micro, const LamMesh *mesh, const LamContactFace *of, PetscReal s)
+{
+  const PetscReal face = LamFaceLength(mesh), at = face * LamMeshShare(mesh, s);
+  PetscReal strength, energy;
+
+  (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
+  if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
+  return LawAt(&micro->lamella, strength, energy,
+               (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length));
+}
+
+static LamCohesive LawOfCut(const LamTearing *tearing)
+{
+  return (LamCohesive){.softening = LAM_SOFTENING_BILINEAR,
+                       .stiffness = tearing->stiffness,
+                       .strength = tearing->strength,
+                       .beta = 1.0,
+                       .energy = {tearing->energy, tearing->energy},
+                       .mixing = 1.0};
+}
+
+void LamLayerSetLaws(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact, LamLayer *layer)
+{
+  layer->toughness[0] = layer->toughness[1] = 0.0;
+  for (PetscInt p = 0; p < layer->count; ++p) {
+    const PetscInt edge = EdgeOf(p);
+    const PetscBool cut = (PetscBool)(p >= layer->between);
+    LamBond *bond = &layer->bond[p];
+
+    bond->law = cut ? LawOfCut(&micro->tearing)
+                    : LawOfFace(micro, mesh, &contact->faces[edge / mesh->along],
+                                (PetscReal)(edge % mesh->along) + LamEdgePlace(p % LAM_EDGE_POINTS));
+    bond->closes = cut;
+    layer->toughness[cut] += layer->weight[p] * LamEnvelopeOf(&bond->law, 0.0).energy / mesh->V0;
   }
 }
 
@@ -108,9 +123,9 @@ PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mes
   PetscCall(PetscMalloc2(layer->count, &layer->weight, edges, &layer->first));
   PetscCall(PetscCalloc4(layer->count, &layer->bond, edges, &layer->nodes, cuts, &layer->torn,
                          cuts ? mesh->cell_count : 0, &layer->burst));
-  for (PetscInt edge = 0; edge < faces; ++edge) SetFaceEdge(micro, mesh, contact, edge, layer);
-  for (PetscInt k = 0; k < cuts * mesh->through; ++k)
-    SetCutEdge(&micro->tearing, mesh, k / mesh->through, k % mesh->through, layer);
+  for (PetscInt edge = 0; edge < faces; ++edge) SetFaceEdge(mesh, contact, edge, layer);
+  for (PetscInt k = 0; k < cuts * mesh->through; ++k) SetCutEdge(mesh, k / mesh->through, k % mesh->through, layer);
+  LamLayerSetLaws(micro, mesh, contact, layer);
   *out = layer;
   PetscFunctionReturn(0);
 }
@@ -133,7 +148,7 @@ void LamLayerSetMatrix(LamRVE rve)
 
     for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
       for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++pair)
-        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes->class[j]);
+        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes -> class[j]);
   }
 }
 
@@ -327,8 +342,7 @@ static void WatchCut(void *ctx, const LamBondPoint *point)
   if (point->face >= 0) return;
   t->after[k] = LamBondKeep(bond, &point->jump, &point->step);
   t->spent[k] = layer->weight[point->point] * LamBondSpent(bond, &point->step) / t->rve->mesh.V0;
-  if (!LamBondIsBroken(bond, point->step.kappa))
-    t->broken[k / (LAM_EDGE_POINTS * t->rve->mesh.through)] = PETSC_FALSE;
+  if (!LamBondIsBroken(bond, point->step.kappa)) t->broken[k / (LAM_EDGE_POINTS * t->rve->mesh.through)] = PETSC_FALSE;
 }
 
 PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any)

@@ -5,9 +5,9 @@
   same reference place. An undamaged lamella resists compression, too; where it is damaged, compression is left to
   contact, which keeps all walls apart. So tissue that is not yet damaged is elastic, without contact to be found.
 
-  Walls that tear have the same law across their cuts (mesh.h), with edges through the wall. The sides of a cut keep each
-  other out, damaged or not, by the stiffness of the undamaged one. A cut is torn once all its points are broken; its cell
-  bursts, at that iterate (LamLayerBurst).
+  Walls that tear have the same law across their cuts (mesh.h), with edges through the wall. The sides of a cut keep
+  each other out, damaged or not, by the stiffness of the undamaged one. A cut is torn once all its points are broken;
+  its cell bursts, at that iterate (LamLayerBurst).
 */
 #ifndef LAM_RVE_LAMELLA_H
 #define LAM_RVE_LAMELLA_H
@@ -22,15 +22,15 @@ typedef struct {
 } LamEdgeNodes;
 
 typedef struct {
-  PetscInt between;                  /* points between cells: those of edge e of face f begin at LAM_EDGE_POINTS (f
-                                        along + e) */
-  PetscInt count;                    /* and all; those of edge m from the lumen of cut k begin at between +
-                                        LAM_EDGE_POINTS (k through + m) */
-  LamEdgeNodes *nodes;               /* [edge] */
-  LamBond *bond;                     /* [count] with the history at the start of the step */
-  PetscReal *weight;                 /* [count] reference length */
-  PetscBool secant;                  /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
-  PetscReal toughness[2];            /* energy of fracture in tension, of the lamella and of all cuts, per V0 */
+  PetscInt between;                       /* points between cells: those of edge e of face f begin at LAM_EDGE_POINTS (f
+                                             along + e) */
+  PetscInt count;                         /* and all; those of edge m from the lumen of cut k begin at between +
+                                             LAM_EDGE_POINTS (k through + m) */
+  LamEdgeNodes *nodes;                    /* [edge] */
+  LamBond *bond;                          /* [count] with the history at the start of the step */
+  PetscReal *weight;                      /* [count] reference length */
+  PetscBool secant;                       /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
+  PetscReal toughness[2];                 /* energy of fracture in tension, of the lamella and of all cuts, per V0 */
   PetscReal spent, released, work, juice; /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
@@ -58,6 +58,8 @@ typedef void (*LamBondVisitor)(void *ctx, const LamBondPoint *point);
 
 PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact,
                               LamLayer **layer);
+/* Sets the laws of all points to those of `micro`, which may have changed. */
+void LamLayerSetLaws(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact, LamLayer *layer);
 PetscErrorCode LamLayerDestroy(LamLayer **layer);
 
 #endif

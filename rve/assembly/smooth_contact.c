@@ -190,7 +190,8 @@ static PetscErrorCode AddFacing(LamRVE rve)
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt per_face = mesh->ring_nodes / LAM_FACES, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
-  const PetscInt last = per_face - (mesh->cuts ? 1 : 0); /* node of a face; in a ring that is whole it begins the next */
+  const PetscInt last =
+      per_face - (mesh->cuts ? 1 : 0); /* node of a face; in a ring that is whole it begins the next */
 
   PetscFunctionBeginUser;
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)

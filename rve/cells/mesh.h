@@ -16,9 +16,9 @@
   affine sides all outer walls without a neighbour) belong to class 0, the origin: x_node = F X_node. F thus enters a
   patch through shifts, as it does a period, and P is the mean of the boundary forces.
 
-  Walls that tear (LamTearing) can be cut at both ends and in the middle of each face. A cut runs along the nodes through
-  the wall, which are there twice: the ring consists of LAM_CUTS parts, one after another, with nodes of their own. Cut
-  k lies between parts k - 1 and k. Bonded cells are whole: both nodes are in one class.
+  Walls that tear (LamTearing) can be cut at both ends and in the middle of each face. A cut runs along the nodes
+  through the wall, which are there twice: the ring consists of LAM_CUTS parts, one after another, with nodes of their
+  own. Cut k lies between parts k - 1 and k. Bonded cells are whole: both nodes are in one class.
 
   Class 0 is prescribed, y = F X. This removes translations; in a patch it prescribes the boundary.
 */

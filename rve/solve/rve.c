@@ -79,17 +79,35 @@ static void CopyModuli(const LamWall *from, LamWall *to)
   to->bulk_modulus = from->bulk_modulus;
 }
 
-PetscErrorCode LamRVEChangeModuli(LamRVE rve, const LamMicrostructure *micro)
+static PetscErrorCode ChangeLayer(LamRVE rve, const LamMicrostructure *micro)
+{
+  LamLamella *lamella = &rve->micro.lamella;
+
+  PetscFunctionBeginUser;
+  lamella->strength = micro->lamella.strength;
+  lamella->shear_strength = micro->lamella.shear_strength;
+  lamella->energy = micro->lamella.energy;
+  lamella->shear_energy = micro->lamella.shear_energy;
+  rve->micro.tearing.strength = micro->tearing.strength;
+  rve->micro.tearing.energy = micro->tearing.energy;
+  PetscCheck(lamella->stiffness > LamLamellaLeastStiffness(&rve->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "the lamella has become so strong that its traction would fall in a jump; a larger stiffness is needed");
+  LamLayerSetLaws(&rve->micro, &rve->mesh, rve->contact, rve->layer);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEChangeTissue(LamRVE rve, const LamMicrostructure *micro)
 {
   PetscFunctionBeginUser;
-  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEChangeModuli");
+  PetscCheck(rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetUp comes before LamRVEChangeTissue");
   CopyModuli(&micro->wall, &rve->micro.wall);
   for (PetscInt cell = 0; rve->micro.cell && cell < rve->mesh.cell_count; ++cell)
     CopyModuli(LamCellWall(micro, cell), &rve->micro.cell[cell].wall);
   PetscCall(SetUpWalls(rve));
+  if (rve->layer) PetscCall(ChangeLayer(rve, micro));
   LamForgetTangent(rve);
   rve->changes++;
-  if (rve->bonded) PetscCall(LamRVEChangeModuli(rve->bonded, micro));
+  if (rve->bonded) PetscCall(LamRVEChangeTissue(rve->bonded, micro));
   PetscFunctionReturn(0);
 }
 

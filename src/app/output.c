@@ -196,8 +196,8 @@ static void PrintOddContact(const LamResponse *response, PetscReal MPa)
   if (response->lumen_contact > SEEN)
     printf("      %.2g %% of the contact force acts within lumens\n", (double)(100 * response->lumen_contact));
   if (response->burst_fraction > 0)
-    printf("      %.3g %% of the cells have burst; their juice was %.3g of V0\n", (double)(100 * response->burst_fraction),
-           (double)response->juice);
+    printf("      %.3g %% of the cells have burst; their juice was %.3g of V0\n",
+           (double)(100 * response->burst_fraction), (double)response->juice);
   if (response->jumped)
     printf("      the branch of the state before has ended: this is the next minimum, %.3g MPa lower in energy\n",
            (double)(response->energy_released * MPa));

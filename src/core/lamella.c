@@ -103,8 +103,8 @@ PetscReal LamTearingLeastStiffness(const LamTearing *tearing)
 
 /*
   Share of the stiffness of walls that their cuts cost, times the stiffness of these. A face of length l has one cut in
-  its middle and half of one at each end: in tension they add 2 E'/(k l) to its compliance. Bent by a moment that changes
-  its sign in the middle, where that cut is, the ends add 1 over a mean square of 1/3, 3 E'/(k l).
+  its middle and half of one at each end: in tension they add 2 E'/(k l) to its compliance. Bent by a moment that
+  changes its sign in the middle, where that cut is, the ends add 1 over a mean square of 1/3, 3 E'/(k l).
 */
 static PetscReal CutPriceTimesStiffness(const LamMicrostructure *micro)
 {

@@ -68,7 +68,8 @@ static const LamKey process_keys[] = {
     {MAP("process.kinetics[]"), .example = "{of: lamella, law: first_order, rate: 0.1 /day}",
      .help = "One property, as a factor X(t) of what it is at the start."},
     {NAME("process.kinetics[].of", LamChangingNames), REQUIRED,
-     .help = "`lamella`: cohesion and strengths of the lamella; `walls`: all moduli of the walls; `C1`, `C2`, `C4`: "
+     .help = "`lamella`: cohesion and strengths of the lamella, with law `lamella` strengths and energies; `walls`: "
+             "all moduli of the walls; `C1`, `C2`, `C4`: "
              "one of them, besides; `wall_strength`; `solutes` in a cell; `permeability` and `reflection` of its "
              "membrane."},
     {NAME_OF("process.kinetics[].law", LamKineticLawNames, LAM_KINETIC_LAW_COUNT), INTO(LamKinetics, law), REQUIRED,
@@ -492,9 +493,10 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
   LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; write mode: prescribed there, and process.water with "
                     "permeability: 0 m/s/MPa for cells that keep their water");
-  LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_LAMELLA, block,
-                    "this version of Lamella does not have processes of law: lamella yet; leave it out, or write law: "
-                    "bonded or contact");
+  LamSceneCheckName(
+      !scene->has_macro || scene->micro.interface != LAM_INTERFACE_LAMELLA, block,
+      "this version of Lamella has processes of law: lamella at a material point only; leave macro out, or "
+      "write law: bonded or contact");
   PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
   PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
   PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));

@@ -9,9 +9,10 @@ static const LamKey strength_keys[] = {
      .example = "{wall: 0.5 MPa, lamella_normal: 0.02 MPa, lamella_shear: 0.05 MPa}",
      .help = "What the tissue bears, for `lamella rve --failure`."},
     {STRESS("strength.wall"), INTO(LamStrength, wall), ABOVE(0), .default_words = "not known", .example = "0.5 MPa",
-     .help = "Tension of a wall at which it tears: Cauchy stress along it plus the turgor of its cell, averaged over "
-             "the wall's thickness and as long a stretch. With `strength.wall_fracture_energy` also the nominal tension "
-             "at which a cut opens."},
+     .help =
+         "Tension of a wall at which it tears: Cauchy stress along it plus the turgor of its cell, averaged over "
+         "the wall's thickness and as long a stretch. With `strength.wall_fracture_energy` also the nominal tension "
+         "at which a cut opens."},
     {AREAL_ENERGY("strength.wall_fracture_energy"), INTO(LamScene, micro.tearing.energy), ABOVE(0),
      .default_words = "walls do not tear", .example = "10 J/m^2",
      .help = "With law `lamella`: walls tear at both ends and in the middle of faces, where the nominal tension across "
@@ -46,13 +47,15 @@ static PetscErrorCode BuildTearing(const LamNode *root, LamScene *scene)
   PetscFunctionBeginUser;
   if (!energy) PetscFunctionReturn(0);
   LamSceneCheck(!isnan(scene->strength.wall), energy, "needs strength.wall, the tension at which walls tear; write it");
-  LamSceneCheck(micro->interface == LAM_INTERFACE_LAMELLA, energy,
-                "contradicts rve.interface.law: %s: walls tear only with law: lamella; write that, with a large strength "
-                "if cells shall not part, or leave this out",
-                LamInterfaceLawNames[micro->interface]);
-  LamSceneCheck(micro->sharpness != LAM_SHARPNESS_EXACT, sharpness,
-                "contradicts strength.wall_fracture_energy: contact of walls that tear is smooth; write smooth, or leave "
-                "it out");
+  LamSceneCheck(
+      micro->interface == LAM_INTERFACE_LAMELLA, energy,
+      "contradicts rve.interface.law: %s: walls tear only with law: lamella; write that, with a large strength "
+      "if cells shall not part, or leave this out",
+      LamInterfaceLawNames[micro->interface]);
+  LamSceneCheck(
+      micro->sharpness != LAM_SHARPNESS_EXACT, sharpness,
+      "contradicts strength.wall_fracture_energy: contact of walls that tear is smooth; write smooth, or leave "
+      "it out");
   if (micro->sharpness == LAM_SHARPNESS_AUTO) micro->contact_width = LAM_USUAL_WIDTH;
   micro->sharpness = LAM_SHARPNESS_SMOOTH;
   micro->tearing.strength = scene->strength.wall;

@@ -146,8 +146,19 @@ static PetscErrorCode CreateNodeSolver(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
-                                 const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+static void MultiplyLamella(const LamTissueFactors *factors, LamMicrostructure *micro)
+{
+  LamLamella *lamella = &micro->lamella;
+
+  lamella->strength *= factors->lamella;
+  lamella->shear_strength *= factors->lamella;
+  lamella->energy *= factors->lamella;
+  lamella->shear_energy *= factors->lamella;
+  micro->tearing.strength *= factors->wall_strength;
+  micro->tearing.energy *= factors->wall_strength;
+}
+
+PetscErrorCode LamFE2ChangeRVE(LamRVE rve, const LamMicrostructure *micro, const LamTissueFactors *factors)
 {
   LamMicrostructure changed;
   PetscErrorCode ierr;
@@ -155,19 +166,20 @@ PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureCopy(micro, &changed));
   const PetscInt cells = changed.cell ? changed.cells[0] * changed.cells[1] : 0;
-  for (PetscInt c = -1; c < cells; c++) LamWallMultiply(c < 0 ? &changed.wall : &changed.cell[c].wall, factor);
-  ierr = LamRVEChangeModuli(rve, &changed);
+  for (PetscInt c = -1; c < cells; c++) LamWallMultiply(c < 0 ? &changed.wall : &changed.cell[c].wall, factors->walls);
+  MultiplyLamella(factors, &changed);
+  ierr = LamRVEChangeTissue(rve, &changed);
   PetscCall(LamMicrostructureDestroy(&changed));
   PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2ChangeTissueWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+PetscErrorCode LamFE2ChangeTissue(void *ctx, const LamTissueFactors *factors)
 {
   LamFE2Tissue *tissue = (LamFE2Tissue *)ctx;
 
   PetscFunctionBeginUser;
-  PetscCall(LamFE2ChangeWalls(tissue->rve, &tissue->scene.micro, factor));
+  PetscCall(LamFE2ChangeRVE(tissue->rve, &tissue->scene.micro, factors));
   PetscFunctionReturn(0);
 }
 

@@ -62,8 +62,8 @@ typedef struct LamFE2Run_s {
   LamSummary summary;
   PetscReal walls; /* common factor of the wall moduli over those of the tissues, in a process; else 1 */
   PetscBool
-      walls_differ; /* parameters also change by wall_ratio, over those of the tissues and without the common factor */
-  PetscReal wall_ratio[LAM_WALL_PARAMETER_COUNT];
+      walls_differ; /* parameters also change by `factors`, over those of the tissues and without the common factor */
+  LamTissueFactors factors;
 
   LamFE2Totals totals;
   PetscReal broken; /* broken_fraction of the last step of this run; 0: there is none */
@@ -104,11 +104,11 @@ PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver'
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
-/* Multiplies each wall parameter of the RVE, relative to those in `micro`, by its factor. */
-PetscErrorCode LamFE2ChangeWalls(LamRVE rve, const LamMicrostructure *micro,
-                                 const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
-/* The same for a LamFE2Tissue; callback for LamProcessSetWalls. */
-PetscErrorCode LamFE2ChangeTissueWalls(void *tissue, const PetscReal factor[LAM_WALL_PARAMETER_COUNT]);
+/* Multiplies each wall parameter of the RVE, and strengths and energies of its lamella and of walls that tear, relative
+   to those in `micro`, by its factor. */
+PetscErrorCode LamFE2ChangeRVE(LamRVE rve, const LamMicrostructure *micro, const LamTissueFactors *factors);
+/* The same for a LamFE2Tissue; callback for LamProcessSetTissue. */
+PetscErrorCode LamFE2ChangeTissue(void *tissue, const LamTissueFactors *factors);
 
 /* Creates the RVE and the direct responder of a tissue; a responder that solves each point from its last state, as far
    as the memory of the scene goes. */

@@ -215,7 +215,7 @@ static PetscErrorCode ZoomOne(LamFE2Run *run, const Zoom *zoom, const char bytes
   PetscFunctionBeginUser;
   PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &rve));
   PetscCall(LamRVESetInterrupt(rve, LamStopInterrupt, NULL));
-  if (run->walls_differ) PetscCall(LamFE2ChangeWalls(rve, &scene->micro, run->wall_ratio));
+  if (run->walls_differ) PetscCall(LamFE2ChangeRVE(rve, &scene->micro, &run->factors));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(Solve(run, zoom, rve, bytes, state, count, found));
   PetscCall(LamRVEStateDestroy(&state));

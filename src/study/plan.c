@@ -56,8 +56,7 @@ static PetscInt CountUnknowns(const LamMicrostructure *micro)
   const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
   const Outer outer = CountOuter(micro);
   const PetscInt cuts = LamWallsTear(micro) ? 2 * LAM_FACES * cells * 2 * micro->through + outer.cuts : 0;
-  const PetscInt nodes =
-      cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners + cuts;
+  const PetscInt nodes = cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners + cuts;
   const PetscInt multipliers = LamCellsPart(micro->interface) ? outer.pairs * (2 * along + 1) : 0;
 
   return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;

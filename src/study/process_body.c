@@ -71,16 +71,16 @@ static PetscErrorCode SetMembranes(LamBodyStudy *study)
   PetscFunctionReturn(0);
 }
 
-/* Sets the moduli of all tissues; `set` of LamBodySetWalls. */
-static PetscErrorCode ChangeWalls(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+/* Sets the moduli of all tissues; `set` of LamBodySetTissue. */
+static PetscErrorCode ChangeTissue(void *ctx, const LamTissueFactors *factors)
 {
   LamBodyStudy *study = (LamBodyStudy *)ctx;
 
   PetscFunctionBeginUser;
   study->fe2.walls_differ = PETSC_TRUE;
-  PetscCall(PetscArraycpy(study->fe2.wall_ratio, factor, LAM_WALL_PARAMETER_COUNT));
+  study->fe2.factors = *factors;
   for (PetscInt t = 0; t < study->fe2.tissues.count; t++)
-    PetscCall(LamFE2ChangeTissueWalls(&study->fe2.tissues.tissues[t], factor));
+    PetscCall(LamFE2ChangeTissue(&study->fe2.tissues.tissues[t], factors));
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +98,7 @@ PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study)
   PetscCall(LamFE2PrepareResponse(fe2));
   PetscCall(SetMembranes(study));
   PetscCall(LamBodySetMonitor(study->body, StateDone, study));
-  if (fe2->response == LAM_FE2_DIRECT) PetscCall(LamBodySetWalls(study->body, ChangeWalls, study));
+  if (fe2->response == LAM_FE2_DIRECT) PetscCall(LamBodySetTissue(study->body, ChangeTissue, study));
   PetscCall(LamSummaryCreate(fe2->scene, &fe2->summary));
   study->history.scene = fe2->scene;
   PetscFunctionReturn(0);

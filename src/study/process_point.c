@@ -3,7 +3,8 @@
 
   The result file is of kind "process": records are the responses of the states, with keys from 0; the other quantities
   are in /process (process_states.c). The microstructure at selected states, for figures, is solved again after the end,
-  each from the previous one.
+  each from the previous one;
+  with a history all states are.
 */
 #include "process_run.h"
 #include "clock.h"
@@ -19,6 +20,9 @@ static PetscErrorCode Connect(LamProcessStudy *study, LamResponder *responder)
   LamFE2Tissue *tissue;
 
   PetscFunctionBeginUser;
+  if (response->response != LAM_FE2_DIRECT)
+    PetscCall(LamRefuseHistory(study->scene->path, &study->scene->micro, "a table",
+                               ", or solve directly, without a database"));
   PetscCall(LamFE2TissuesCreateOne(PETSC_COMM_SELF, study->scene, response->database_path, 1, &response->tissues));
   tissue = response->tissues.tissues;
   PetscCall(LamFE2PrepareTissue(response, tissue));
@@ -67,28 +71,34 @@ static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k)
   return (PetscBool)(frames > 1 && k * (frames - 1) / (n - 1) != (k - 1) * (frames - 1) / (n - 1));
 }
 
+static PetscBool HasHistory(const LamProcessStudy *study)
+{
+  return (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_LAMELLA);
+}
+
 static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState at, PetscInt k)
 {
   const LamProcessState *state = &study->history.states[k];
   LamScales scales = study->scene->scales;
   LamLoad load = state->response.load;
-  PetscReal ratio[LAM_WALL_PARAMETER_COUNT];
+  LamTissueFactors factors;
+  const PetscReal unit = LamProcessTissueFactors(study->scene, state->factor, &factors);
   char group[LAM_NAME_LENGTH];
   LamResponse response;
 
   PetscFunctionBeginUser;
-  load.turgor /= state->walls;
-  load.cohesion /= state->walls;
-  scales.stress *= state->walls;
-  (void)LamWallRatios(&study->scene->micro.wall, &state->factor[LAM_CHANGING_OF_PARAMETER(0)], ratio);
-  if (!LamProcessWallsStayAlike(study->scene))
-    PetscCall(LamFE2ChangeTissueWalls(study->response.tissues.tissues, ratio));
+  load.turgor /= unit;
+  load.cohesion /= unit;
+  scales.stress *= unit;
+  if (HasHistory(study) || !LamProcessWallsStayAlike(study->scene))
+    PetscCall(LamFE2ChangeTissue(study->response.tissues.tissues, &factors));
   PetscCall(LamRVESolve(rve, &load, at, &response));
   if (!LamResponseHasFields(&response)) {
     LamReportNote(&study->response.reporter, "the cells of state %d are not kept: solved once more it is %s: %s",
                   (int)k, LamStatusNames[response.status], response.reason);
     PetscFunctionReturn(0);
   }
+  if (!IsChosen(study, k)) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(group, sizeof(group), "/fields/%" PetscInt_FMT, k));
   PetscCall(LamRVEWriteFields(study->writer, group, rve, at, &scales));
   PetscFunctionReturn(0);
@@ -111,7 +121,7 @@ static PetscErrorCode WriteFrames(LamProcessStudy *study)
   PetscCall(LamRVEStateCreate(rve, &state));
   ierr = LamRVEWriteMesh(study->writer, "/mesh", rve);
   for (PetscInt k = 0; k < study->history.count && !ierr && !LamStopRequested(); k++)
-    if (IsChosen(study, k)) ierr = WriteFrame(study, rve, state, k);
+    if (HasHistory(study) || IsChosen(study, k)) ierr = WriteFrame(study, rve, state, k);
   PetscCall(LamRVEStateDestroy(&state));
   PetscCall(LamRVEDestroy(&own));
   PetscCall(ierr);
@@ -169,7 +179,7 @@ static PetscErrorCode Solve(LamProcessStudy *study)
   if (study->response.stopped) PetscFunctionReturn(0);
   PetscCall(LamProcessSetResponder(study->process, responder));
   if (study->response.response == LAM_FE2_DIRECT)
-    PetscCall(LamProcessSetWalls(study->process, LamFE2ChangeTissueWalls, study->response.tissues.tissues));
+    PetscCall(LamProcessSetTissue(study->process, LamFE2ChangeTissue, study->response.tissues.tissues));
   if (study->response.response == LAM_FE2_CACHE)
     PetscCall(LamProcessSetReferenceResponder(study->process, study->response.tissues.tissues->direct));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));

@@ -34,13 +34,13 @@ static PetscErrorCode KeepState(const LamProcessState *state, void *ctx)
   return 0;
 }
 
-static PetscErrorCode ChangeModuli(void *ctx, const PetscReal factor[LAM_WALL_PARAMETER_COUNT])
+static PetscErrorCode ChangeTissue(void *ctx, const LamTissueFactors *factors)
 {
   Followed *f = (Followed *)ctx;
   LamMicrostructure micro = f->scene->micro;
 
-  LamWallMultiply(&micro.wall, factor);
-  return LamRVEChangeModuli(f->rve, &micro);
+  LamWallMultiply(&micro.wall, factors->walls);
+  return LamRVEChangeTissue(f->rve, &micro);
 }
 
 static Followed Follow(const char text[])
@@ -56,7 +56,7 @@ static Followed Follow(const char text[])
   assert_int_equal(LamRVEResponderCreate(f.rve, 1, &f.direct), 0);
   assert_int_equal(LamProcessCreate(f.scene, &f.process), 0);
   assert_int_equal(LamProcessSetResponder(f.process, f.direct), 0);
-  assert_int_equal(LamProcessSetWalls(f.process, ChangeModuli, &f), 0);
+  assert_int_equal(LamProcessSetTissue(f.process, ChangeTissue, &f), 0);
   assert_int_equal(LamProcessSetMonitor(f.process, KeepState, &f), 0);
   assert_int_equal(LamProcessRun(f.process, &f.reason, f.message), 0);
   return f;
