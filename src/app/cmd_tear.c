@@ -44,6 +44,8 @@ static Units UnitsOf(const LamTear *tear)
   X("dissipated", " (J/m^2)", p->dissipated *units.energy)                                                             \
   X("released", " (J/m^2)", p->released *units.energy)                                                                 \
   X("broken_fraction", "", p->broken)                                                                                  \
+  X("dissipated_walls", " (J/m^2)", p->walls *units.energy)                                                            \
+  X("burst_fraction", "", p->burst)                                                                                    \
   X("F11", "", p->F[0][0])                                                                                             \
   X("F12", "", p->F[0][1])                                                                                             \
   X("F22", "", p->F[1][1])
@@ -98,7 +100,7 @@ static void PrintPoints(const LamTearCurve *curve, Units units)
 static const char *const EndWords[] = {
     [LAM_TEAR_APART] = "comes apart",
     [LAM_TEAR_SEPARATION] = "still holds",
-    [LAM_TEAR_TORN] = "its turgor alone has torn it",
+    [LAM_TEAR_TORN] = "is torn by its turgor alone",
     [LAM_TEAR_UNSOLVED] = "was not followed to its end",
     [LAM_TEAR_STOPPED] = "was stopped",
 };
@@ -113,6 +115,9 @@ static void PrintReadings(const LamTearCurve *curve, Units units)
   printf("  energy %.4g J/m^2", (double)(r.energy * units.energy));
   if (isfinite(r.share)) printf(", %.3g %% of it released in jumps", (double)(100 * r.share));
   printf("; work of the traction %.4g J/m^2\n", (double)(last->work * units.energy));
+  if (last->burst > 0 || last->walls > 0)
+    printf("  walls have spent %.4g J/m^2 of it; %.3g %% of the cells have burst\n", (double)(last->walls * units.energy),
+           (double)(100 * last->burst));
   printf("  energy of the lamella in a straight crack %.4g J/m^2\n", (double)(curve->straight * units.energy));
 }
 

@@ -153,6 +153,8 @@ static PetscErrorCode AddPoint(const Layer *layer, const LamResponse *r, LamTear
                      .dissipated = dissipated,
                      .released = work - stored - dissipated,
                      .broken = r->broken_fraction,
+                     .walls = energy * (r->dissipated_walls - zero->dissipated_walls),
+                     .burst = r->burst_fraction,
                      .jumped = r->jumped,
                      .F = {{F[0], F[1]}, {F[3], F[4]}}};
   PetscFunctionReturn(0);

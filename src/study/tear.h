@@ -54,6 +54,8 @@ typedef struct {
   PetscReal stored, dissipated;
   PetscReal released; /* work - stored - dissipated: lost in jumps, and the error of the rule */
   PetscReal broken;   /* broken_fraction of the response */
+  PetscReal walls;    /* the part of `dissipated` in walls that tear */
+  PetscReal burst;    /* burst_fraction of the response */
   PetscBool jumped;   /* from the state before */
   PetscReal F[2][2];  /* from the undeformed tissue */
 } LamTearPoint;

@@ -14,7 +14,8 @@ objects = [json.loads(line) for line in open("out.txt")]
 points, curves = [o for o in objects if "curve" not in o], [o["curve"] for o in objects if "curve" in o]
 rows = list(csv.DictReader(open("law.csv")))
 assert list(rows[0]) == ["mode", "turgor (MPa)", "separation (um)", "traction (MPa)", "crack_separation (um)", "dilation (um)",
-                         "work (J/m^2)", "stored (J/m^2)", "dissipated (J/m^2)", "released (J/m^2)", "broken_fraction", "F11",
+                         "work (J/m^2)", "stored (J/m^2)", "dissipated (J/m^2)", "released (J/m^2)", "broken_fraction",
+                         "dissipated_walls (J/m^2)", "burst_fraction", "F11",
                          "F12", "F22", "jumped"], list(rows[0])
 assert len(rows) == len(points) == sum(c["states"] for c in curves)
 for row, point in zip(rows, points):
