@@ -122,12 +122,27 @@ static PetscErrorCode Join(LamFE2Run *run, LamResponder *responder)
   PetscFunctionReturn(0);
 }
 
+/* Whether a sample's states, which are led along a few loads of the run, lack its history. */
+static PetscBool HasHistory(const LamFE2Run *run)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (PetscInt t = 0; t < run->tissues.count; t++)
+    has = (PetscBool)(has || LamFE2HoldsModels(run, &run->tissues.tissues[t]));
+  return has;
+}
+
 PetscErrorCode LamFE2Certify(LamFE2Run *run)
 {
   PetscBool contact = PETSC_FALSE;
   LamResponder responder;
 
   PetscFunctionBeginUser;
+  if (run->certify == LAM_CERTIFY_SHARE && HasHistory(run)) {
+    PetscCall(LamMacroRefuseCertificate(
+        run->macro, "a sample of points would have to go the whole way of a lamella that breaks; --certify does"));
+    PetscFunctionReturn(0);
+  }
   for (PetscInt t = 0; t < run->tissues.count; t++) {
     LamFE2Tissue *tissue = &run->tissues.tissues[t];
 
