@@ -59,12 +59,29 @@ static PetscErrorCode Solve(Models *models, Point *point, const LamLoad *load, L
   PetscFunctionReturn(0);
 }
 
+/* Learns from a solve behind a model's guess: the error of the guess, and that of the new model where the last solve
+   was, which is the larger one where the response bends more and more. */
+static PetscErrorCode Learn(Models *models, const LamResponse *before, const LamResponse *guess,
+                            const LamModelError *error, LamPointModel *fresh)
+{
+  const LamStressScale scale = LamStressScaleOf(&models->rve->micro);
+  LamModelError back_error;
+  LamResponse back;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamPointModelRespond(models->rve, fresh, &before->load, &back, &back_error));
+  LamPointModelLearn(
+      error, PetscMax(LamStressError(scale, guess->P, fresh->response.P), LamStressError(scale, back.P, before->P)),
+      &fresh->curvature);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode RespondAt(Models *models, Point *point, const LamLoad *load, LamResponse *response)
 {
   const LamPointModel *model = ModelOf(point);
   const PetscBool was_known = model->known;
   LamModelError error;
-  LamResponse guess;
+  LamResponse guess, before;
 
   PetscFunctionBeginUser;
   point->asked = *load;
@@ -77,13 +94,10 @@ static PetscErrorCode RespondAt(Models *models, Point *point, const LamLoad *loa
       PetscFunctionReturn(0);
     }
     guess = *response;
+    before = model->response;
   }
   PetscCall(Solve(models, point, load, response));
-  if (was_known && response->status == LAM_CONVERGED) {
-    const PetscReal actual = LamStressError(LamStressScaleOf(&models->rve->micro), guess.P, response->P);
-
-    LamPointModelLearn(&error, actual, &point->fresh.curvature);
-  }
+  if (was_known && point->fresh.known) PetscCall(Learn(models, &before, &guess, &error, &point->fresh));
   PetscFunctionReturn(0);
 }
 

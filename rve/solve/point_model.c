@@ -8,8 +8,10 @@
 /* Measured (docs/theory/database.md, Points that break): medians of the error over the sum of the tractions' errors,
    and over the square of the distance. */
 static const PetscReal BRANCH_SHARE = 0.25, FIRST_CURVATURE = 50;
-static const PetscReal LEAST_CURVATURE = 5, MOST_CURVATURE = 1000;
-static const PetscReal MOST_LEARNT = 4; /* times the curvature before: what one solve changes it by */
+static const PetscReal LEAST_CURVATURE = 25, MOST_CURVATURE = 1000;
+static const PetscReal JUMPED_CURVATURE = 200; /* at least, behind a jump: its branch begins near an end */
+/* What one solve changes the curvature by at most; the exponent with which it falls, for what errs seldom errs much. */
+static const PetscReal MOST_LEARNT = 4, FORGETS = 0.25;
 
 PetscErrorCode LamPointModelCreate(LamRVE rve, LamPointModel *model)
 {
@@ -40,6 +42,7 @@ PetscErrorCode LamPointModelTake(LamRVE rve, const LamResponse *response, LamPoi
                   LamExpansionMake(response, PETSC_FALSE, &expansion));
   if (!model->known) PetscFunctionReturn(0);
   model->response = *response;
+  if (response->jumped) model->curvature = PetscMax(model->curvature, JUMPED_CURVATURE);
   model->spent = rates->spent;
   PetscCall(PetscArraycpy(model->bond, rates->bond, rve->layer->count));
   PetscCall(PetscArraycpy(model->history, rates->before, rve->layer->count));
@@ -49,12 +52,13 @@ PetscErrorCode LamPointModelTake(LamRVE rve, const LamResponse *response, LamPoi
 void LamPointModelLearn(const LamModelError *error, PetscReal actual, PetscReal *curvature)
 {
   const PetscReal least_distance2 = 1e-8; /* below it rounding and the tolerance of solves count */
-  PetscReal found;
+  PetscReal ratio;
 
   if (error->distance2 < least_distance2) return;
-  found = PetscMax(0.0, actual - error->branch) / error->distance2;
-  found = PetscMin(PetscMax(found, *curvature / MOST_LEARNT), *curvature * MOST_LEARNT);
-  *curvature = PetscMin(PetscMax(PetscSqrtReal(*curvature * found), LEAST_CURVATURE), MOST_CURVATURE);
+  ratio = actual / (error->branch + error->smooth);
+  ratio = PetscMin(PetscMax(ratio, 1.0 / MOST_LEARNT), MOST_LEARNT);
+  *curvature *= ratio > 1.0 ? ratio : PetscPowReal(ratio, FORGETS);
+  *curvature = PetscMin(PetscMax(*curvature, LEAST_CURVATURE), MOST_CURVATURE);
 }
 
 /* Change of F11, F12, F21, F22, p, where F is turned as the solve was. */
