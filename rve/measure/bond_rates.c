@@ -6,8 +6,9 @@
 */
 #include "measure.h"
 
-#define STEP 1e-6 /* change of F and p: errors of rounding (1e-16/1e-6) are as large as those of the quotient, about   \
-                   */
+#define STEP                                                                                                           \
+  1e-6 /* change of F and p: errors of rounding (1e-16/1e-6) are as large as those of the quotient, about              \
+        */
 
 #define LEVER                                                                                                          \
   2.0 /* apothems: distance of the centres of neighbours, by which tractions on their face add to the stress */
@@ -71,21 +72,27 @@ void LamLayerPredict(LamRVE rve, const LamBondRate rates[], const PetscReal chan
                      const LamBondHistory before[], LamBondHistory after[], LamLayerPrediction *prediction)
 {
   const LamLayer *layer = rve->layer;
+  PetscBool breaks_through = PETSC_FALSE;
 
   *prediction = (LamLayerPrediction){0};
   for (PetscInt p = 0; p < layer->count; ++p) {
     LamBond bond = layer->bond[p];
-    LamBondPoint point = {.point = p, .face = p / (LAM_EDGE_POINTS * rve->mesh.along)};
+    const PetscBool cut = (PetscBool)(p >= layer->between);
+    LamBondPoint point = {.point = p, .face = cut ? -1 : p / (LAM_EDGE_POINTS * rve->mesh.along)};
     PetscReal start, delta, T;
+    LamBondHistory kept;
 
     LamBondTake(&before[p], &bond);
     start = Move(&rates[p], change, bond.law.beta, &point.jump);
     LamCohesiveStepEvaluate(&bond.now, bond.kappa, point.jump.q, &point.step);
     LamDamageAdd(rve, &bond, &point, &prediction->damage);
-    if (after) after[p] = LamBondKeep(&bond, &point.jump, &point.step);
+    kept = LamBondKeep(&bond, &point.jump, &point.step);
+    if (cut && kept.integrity <= 0.0 && before[p].integrity > 0.0) breaks_through = PETSC_TRUE;
+    if (after) after[p] = kept;
     delta = PetscSqrtReal(point.jump.q);
     T = rates[p].secant * start + rates[p].slope * (delta - start);
     prediction->error += layer->weight[p] * PetscAbsReal(2.0 * point.step.d * delta - T);
   }
   prediction->error *= LEVER / rve->mesh.V0;
+  if (breaks_through) prediction->error = PETSC_INFINITY; /* a cell may burst */
 }

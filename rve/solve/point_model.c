@@ -7,8 +7,8 @@
 
 /* Measured (docs/theory/database.md, Points that break): medians of the error over the sum of the tractions' errors,
    and over the square of the distance. */
-static const PetscReal BRANCH_SHARE = 0.25, FIRST_CURVATURE = 50;
-static const PetscReal LEAST_CURVATURE = 25, MOST_CURVATURE = 1000;
+static const PetscReal BRANCH_SHARE = 0.15, FIRST_CURVATURE = 75;
+static const PetscReal LEAST_CURVATURE = 40, MOST_CURVATURE = 1000;
 static const PetscReal JUMPED_CURVATURE = 200; /* at least, behind a jump: its branch begins near an end */
 /* What one solve changes the curvature by at most; the exponent with which it falls, for what errs seldom errs much. */
 static const PetscReal MOST_LEARNT = 4, FORGETS = 0.25;

@@ -122,7 +122,8 @@ static PetscErrorCode Join(LamFE2Run *run, LamResponder *responder)
   PetscFunctionReturn(0);
 }
 
-/* Whether a sample's states, which are led along a few loads of the run, lack its history. */
+/* Whether the response of a point depends on all increments that the run has gone, of which certificates know only
+   complete steps. */
 static PetscBool HasHistory(const LamFE2Run *run)
 {
   PetscBool has = PETSC_FALSE;
@@ -138,9 +139,12 @@ PetscErrorCode LamFE2Certify(LamFE2Run *run)
   LamResponder responder;
 
   PetscFunctionBeginUser;
-  if (run->certify == LAM_CERTIFY_SHARE && HasHistory(run)) {
-    PetscCall(LamMacroRefuseCertificate(
-        run->macro, "a sample of points would have to go the whole way of a lamella that breaks; --certify does"));
+  if (HasHistory(run)) {
+    PetscCheck(run->certify != LAM_CERTIFY_ALL, run->comm, PETSC_ERR_USER_INPUT,
+               "%s: reactions of a lamella that breaks cannot be certified: they depend on every increment; leave "
+               "--certify out, and compare with a smaller macro.response.accuracy or --response direct",
+               run->scene_path);
+    PetscCall(LamMacroRefuseCertificate(run->macro, "reactions of a lamella that breaks depend on every increment"));
     PetscFunctionReturn(0);
   }
   for (PetscInt t = 0; t < run->tissues.count; t++) {

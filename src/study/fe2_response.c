@@ -232,15 +232,13 @@ PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamRespo
   FE².
 */
 #define EVEN_ALONG 12 /* elements along a face */
-/* Where a body tears reactions hang on the load at which its points do: docs/results/performance.md, FE² that tears. */
-#define MODEL_SHARE 0.3
 static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
 {
   const LamScene *scene = &tissue->scene;
   const PetscBool contact = (PetscBool)(LamCellsPart(scene->micro.interface) && scene->micro.along >= EVEN_ALONG);
 
   if (scene->response.accuracy > 0) return scene->response.accuracy;
-  if (LamFE2HoldsModels(run, tissue)) return MODEL_SHARE * scene->accuracy;
+  if (LamFE2HoldsModels(run, tissue)) return scene->accuracy; /* docs/results/performance.md, FE² that tears */
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;
 }
 
