@@ -188,3 +188,11 @@ PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference, LamC
       macro->scene->path);
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode LamMacroRefuseCertificate(LamMacro macro, const char why[])
+{
+  PetscFunctionBeginUser;
+  macro->certify = LAM_CERTIFY_SHARE;
+  PetscCall(PetscStrncpy(macro->uncertified, why, sizeof(macro->uncertified)));
+  PetscFunctionReturn(0);
+}

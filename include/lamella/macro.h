@@ -115,6 +115,8 @@ LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder resp
 */
 LAM_EXPORT PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference, LamCertify which,
                                                PetscBool branches);
+/* Instead: the certificate at the end says why there is none. */
+LAM_EXPORT PetscErrorCode LamMacroRefuseCertificate(LamMacro macro, const char why[]);
 LAM_EXPORT PetscErrorCode LamMacroSetMonitor(LamMacro macro, LamMacroMonitor monitor, void *ctx);
 LAM_EXPORT PetscErrorCode LamMacroSetCutback(LamMacro macro, LamMacroCutback cutback, void *ctx);
 /*

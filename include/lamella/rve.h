@@ -218,6 +218,14 @@ LAM_EXPORT PetscErrorCode LamRVEGetLamella(LamRVE rve, LamRVEState state, const 
   start from the reference. It can be sealed if `rve` can, and then only responds for the points that it keeps.
 */
 LAM_EXPORT PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *responder);
+/*
+  The same of tissue with law `lamella`, whose points hold second-order models of their last solves, at the history that
+  they have accepted: a query is solved where the model's estimated error of P, as LamStressError, exceeds `accuracy`.
+  Responses of models have the source LAM_SOURCE_DATABASE and the indicators of their solve, which are not trusted. For
+  material points alone; cannot be sealed. PETSC_ERR_ARG_WRONGSTATE for another law.
+*/
+LAM_EXPORT PetscErrorCode LamRVEModelResponderCreate(LamRVE rve, PetscInt points, PetscReal accuracy,
+                                                     LamResponder *responder);
 /* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */
 LAM_EXPORT PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
 

@@ -83,9 +83,9 @@ typedef enum { LAM_FE2_DIRECT, LAM_FE2_CACHE, LAM_FE2_DATABASE } LamFE2Response;
 LAM_EXPORT extern const char *const LamFE2ResponseNames[]; /* "direct", ... */
 
 typedef struct {
-  LamFE2Response response;   /* direct: an RVE solve per material point; cache: queries, and solves of missing states;
-                                database: queries only */
-  const char *database_path; /* NULL: none; needed by the last two */
+  LamFE2Response response;   /* direct: an RVE solve per material point; cache: queries, and solves of missing states,
+                                with a lamella that breaks models of the points; database: queries only */
+  const char *database_path; /* NULL: none; needed by the last one */
   const char *out_path;      /* HDF5 results, with .xdmf and .csv beside it; NULL: none */
   PetscBool resume;          /* continue after the last complete step of out_path */
   LamReporter reporter;

@@ -56,6 +56,19 @@ typedef struct {
 } LamBondPoint;
 typedef void (*LamBondVisitor)(void *ctx, const LamBondPoint *point);
 
+/* How the jump of a point changes with the load. */
+#define LAM_BOND_RATES 5 /* F11, F12, F21, F22, p */
+typedef struct {
+  PetscReal jump[2], rate[2][LAM_BOND_RATES]; /* delta_n and delta_t */
+  PetscReal secant, slope;                    /* T/delta and dT/ddelta of the tangent */
+} LamBondRate;
+typedef struct {
+  LamLoad load; /* of the state that they belong to */
+  LamBondRate *bond;
+  LamBondHistory *before; /* from which the tangent of that state counts, */
+  PetscReal spent;        /* with what was dissipated until then, per V0 */
+} LamBondRates;
+
 PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact,
                               LamLayer **layer);
 /* Sets the laws of all points to those of `micro`, which may have changed. */

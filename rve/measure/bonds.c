@@ -1,29 +1,32 @@
 /* Energies, damage and forces of the lamella at rve->y. */
 #include "measure.h"
 
+void LamDamageAdd(LamRVE rve, const LamBond *bond, const LamBondPoint *point, LamDamage *damage)
+{
+  const PetscReal weight = rve->layer->weight[point->point];
+  const PetscReal spent = weight * LamEnvelopeSpent(&bond->now, point->step.kappa);
+  PetscInt family;
+
+  damage->dissipated += weight * LamBondSpent(bond, &point->step);
+  if (point->face < 0) {
+    damage->torn += spent;
+    return;
+  }
+  family = rve->contact->faces[point->face].face;
+  damage->spent[family] += spent;
+  damage->toughness[family] += weight * bond->now.energy;
+}
+
 typedef struct {
   LamRVE rve;
-  PetscReal dissipated;             /* in this step */
-  PetscReal spent[3], toughness[3]; /* of the lamella, by face family: energy spent, and that of fracture */
-  PetscReal torn;                   /* energy spent in cuts of walls */
+  LamDamage damage;
 } Bonds;
 
 static void AddBond(void *ctx, const LamBondPoint *point)
 {
   Bonds *bonds = (Bonds *)ctx;
-  const LamLayer *layer = bonds->rve->layer;
-  const LamBond *bond = &layer->bond[point->point];
-  const PetscReal weight = layer->weight[point->point];
-  PetscInt family;
 
-  bonds->dissipated += weight * LamBondSpent(bond, &point->step);
-  if (point->face < 0) {
-    bonds->torn += weight * LamEnvelopeSpent(&bond->now, point->step.kappa);
-    return;
-  }
-  family = bonds->rve->contact->faces[point->face].face;
-  bonds->spent[family] += weight * LamEnvelopeSpent(&bond->now, point->step.kappa);
-  bonds->toughness[family] += weight * bond->now.energy;
+  LamDamageAdd(bonds->rve, &bonds->rve->layer->bond[point->point], point, &bonds->damage);
 }
 
 typedef struct {
@@ -102,22 +105,28 @@ static void MeasureBursts(LamRVE rve, LamResponse *response)
   response->juice = rve->layer->juice;
 }
 
+void LamDamageFill(const LamDamage *damage, LamResponse *response)
+{
+  PetscReal spent = 0.0, toughness = 0.0;
+
+  for (PetscInt k = 0; k < 3; ++k) {
+    response->broken_by_face[k] = Share(damage->toughness[k], damage->spent[k]);
+    spent += damage->spent[k];
+    toughness += damage->toughness[k];
+  }
+  response->broken_fraction = Share(toughness, spent);
+}
+
 void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   Bonds bonds = {.rve = rve};
-  PetscReal spent = 0.0, toughness = 0.0;
 
   LamLayerVisitPoints(rve, load->F, rve->y, AddBond, &bonds);
-  for (PetscInt k = 0; k < 3; ++k) {
-    response->broken_by_face[k] = Share(bonds.toughness[k], bonds.spent[k]);
-    spent += bonds.spent[k];
-    toughness += bonds.toughness[k];
-  }
-  response->broken_fraction = Share(toughness, spent);
-  response->dissipated = rve->layer->spent + bonds.dissipated / rve->mesh.V0;
-  response->dissipated_walls = bonds.torn / rve->mesh.V0;
+  LamDamageFill(&bonds.damage, response);
+  response->dissipated = rve->layer->spent + bonds.damage.dissipated / rve->mesh.V0;
+  response->dissipated_walls = bonds.damage.torn / rve->mesh.V0;
   MeasureBursts(rve, response);
   response->released = rve->layer->released;
-  response->stored = (rve->energy - bonds.dissipated) / rve->mesh.V0;
+  response->stored = (rve->energy - bonds.damage.dissipated) / rve->mesh.V0;
   response->energy = response->stored + response->dissipated;
 }

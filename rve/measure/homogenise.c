@@ -261,7 +261,8 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
 
 /* Corrects L_F to first order to the solution near the positions, -= L_Fy K^-1 r, and with `derivatives` sets
    H = (L_qq - R^T K^-1 R) / V0. */
-static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscBool derivatives, PetscReal H[NQ][NQ])
+static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c, PetscBool derivatives,
+                               PetscReal H[NQ][NQ])
 {
   const PetscInt n = rve->linear->n, nq = c->nq;
   PetscReal *rhs, *solution, *R, *X; /* r and its solution, then the columns and theirs */
@@ -280,6 +281,11 @@ static PetscErrorCode Condense(LamRVE rve, Condensation *c, PetscBool derivative
 
       H[q][r] = H[r][q] = (c->Lqq[q][r] - 0.5 * sum) / rve->mesh.V0;
     }
+  if (derivatives && rve->rates) {
+    const PetscReal *columns[LAM_BOND_RATES] = {X, X + n, X + 2 * n, X + 3 * n, X + Q_TURGOR * n};
+
+    PetscCall(LamBondRatesFind(rve, load, columns));
+  }
   PetscCall(PetscFree2(rhs, solution));
   PetscFunctionReturn(0);
 }
@@ -378,7 +384,7 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
 
   PetscFunctionBeginUser;
   PetscCall(Assemble(rve, load, &c));
-  PetscCall(Condense(rve, &c, derivatives, H));
+  PetscCall(Condense(rve, load, &c, derivatives, H));
   for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
   if (derivatives) FillDerivatives(rve, (const PetscReal(*)[NQ])H, response);

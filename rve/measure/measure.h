@@ -6,6 +6,7 @@
     failure.c      stretch, energy and tension of the walls, and whether they kink (wall_ellipticity.h)
     indicators.c   debonding: separation of cells
     bonds.c        the lamella: energies and damage
+    bond_rates.c   how its jumps change with the load
     lumen.c        collapsed lumens
     fields.c       fields for pictures
 */
@@ -85,6 +86,15 @@ void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 /* ---- bonds.c ---- */
 /* Sets energies and broken fractions of tissue with a lamella; after LamHomogenise. */
 void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* Sums over the points of the lamella. */
+typedef struct {
+  PetscReal dissipated;             /* in this step */
+  PetscReal spent[3], toughness[3]; /* of the lamella, by face family: energy spent, and that of fracture */
+  PetscReal torn;                   /* energy spent in cuts of walls */
+} LamDamage;
+void LamDamageAdd(LamRVE rve, const LamBond *bond, const LamBondPoint *point, LamDamage *damage);
+/* Sets the broken fractions. */
+void LamDamageFill(const LamDamage *damage, LamResponse *response);
 /* Forces per reference thickness at the points of the lamella, tension and the direction along the slave's wall being
    positive, and the reference length about each hat that is not broken. Without a lamella all are NULL. */
 typedef struct {
@@ -95,6 +105,19 @@ PetscErrorCode LamLayerForcesCreate(LamRVE rve, const LamLoad *load, LamLayerFor
 PetscErrorCode LamLayerForcesDestroy(LamLayerForces *forces);
 /* Force of a face, whose points are force[], between two places, in edges, of the same edge. */
 PetscReal LamLayerForceBetween(const PetscReal force[], PetscReal a, PetscReal b);
+
+/* ---- bond_rates.c ---- */
+/* Fills rve->rates; columns: K^-1 L_yq for q = F11, F12, F21, F22, p. */
+PetscErrorCode LamBondRatesFind(LamRVE rve, const LamLoad *load, const PetscReal *const columns[LAM_BOND_RATES]);
+/* A layer with the history `before` whose jumps have changed at their rates. */
+typedef struct {
+  LamDamage damage;
+  PetscReal error; /* stress by which the law at these jumps and its tangent differ */
+} LamLayerPrediction;
+/* change: of F11, F12, F21, F22, p from the state of the rates. after: the history there, may be `before`; NULL: not
+   wanted. */
+void LamLayerPredict(LamRVE rve, const LamBondRate rates[], const PetscReal change[LAM_BOND_RATES],
+                     const LamBondHistory before[], LamBondHistory after[], LamLayerPrediction *prediction);
 
 /* ---- lumen.c ---- */
 /* The first cell whose inner loop at positions y intersects itself or is inverted; -1: none. */

@@ -16,6 +16,8 @@
 #include "solve.h"
 
 #define HALVINGS 6
+/* For a model of a material point, within whose reach, as long as a part or longer, jumps are not looked for at all. */
+#define MODEL_HALVINGS 3
 #define BUDGET 1000 /* iterations, after which what is left of a step is taken at once */
 /* A jump loses at least these shares of the energy dissipated in the step and of its turnover: less is curvature, in
    nine of ten suspicious steps of random programs. */
@@ -135,6 +137,7 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
 /* Replaces a state and its response by those at the end of smaller steps; where these fail, it stays. */
 static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const Target *end, LamRVEState state, Retracing *r)
 {
+  const PetscInt halvings = rve->rates ? MODEL_HALVINGS : HALVINGS;
   const Target middle = Middle(before, end);
   const LamResponse found = r->response;
   LamRVEState at;
@@ -142,8 +145,8 @@ static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const Target *en
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
-  PetscCall(Retrace(rve, at, &middle, HALVINGS - 1, r));
-  if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, end, HALVINGS - 1, r));
+  PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
+  if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, end, halvings - 1, r));
   if (r->response.status == LAM_CONVERGED) {
     PetscCall(LamRVEStateCopy(at, state));
   } else {

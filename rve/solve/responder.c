@@ -7,17 +7,25 @@
   accepted state. A query without a point, or of one without stored states, starts
   from the reference state. After sealing, each point keeps the water of its accepted state.
 
+  Jumps of a lamella. A body may be in equilibrium neither before one of its points jumps nor after, because the jump
+  unloads the point and the body then takes it back across: iterates then go to and fro. So a point that has jumped in a
+  load step stays behind the jump for queries nearby, which start from the latest solution with its history.
+
   A uniformly inflated body queries the same load at all its points. A query with the same load and initial state as the
   last one, bit for bit, therefore returns the last response.
 */
 #include "solve.h"
 #include <string.h>
 
+static const PetscReal NEARBY =
+    1e-3; /* change of F, Frobenius norm; chosen: what iterates that converge still move by */
+
 typedef struct {
   LamRVE rve; /* borrowed */
   LamResponderCounters counters;
   PetscInt points;                /* number of points with stored states */
   LamRVEState *accepted, *latest; /* [points] */
+  PetscBool *jumped;              /* [points] with a lamella: `latest` is behind a jump of this load step */
   PetscReal *water;               /* [points][cell] V_w over V0; NULL: turgor is prescribed */
   PetscReal bulk_modulus;         /* of the water */
   LamRVEState scratch;
@@ -80,6 +88,23 @@ static PetscErrorCode RespondAt(DirectResponder *direct, PetscInt point, const L
   PetscFunctionReturn(0);
 }
 
+static PetscBool IsNearby(const LamLoad *a, const LamLoad *b)
+{
+  PetscReal square = 0.0;
+
+  for (int k = 0; k < 9; ++k) square += PetscSqr(a->F[k] - b->F[k]);
+  return (PetscBool)(square <= PetscSqr(NEARBY) && a->turgor == b->turgor && a->cohesion == b->cohesion);
+}
+
+/* Whether a query starts from the accepted state of a point that has stored states. */
+static PetscBool StartsAccepted(const DirectResponder *direct, PetscInt point, const LamLoad *load)
+{
+  const LamRVEState latest = direct->latest[point];
+
+  if (direct->rve->layer) return (PetscBool)(!direct->jumped[point] || !IsNearby(load, &latest->load));
+  return (PetscBool)(latest->branch != direct->accepted[point]->branch);
+}
+
 static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
                               LamResponse responses[])
 {
@@ -92,20 +117,25 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
     if (point >= 0 && point < direct->points) {
       state = direct->latest[point];
-      if (direct->rve->layer || state->branch != direct->accepted[point]->branch)
+      if (StartsAccepted(direct, point, &loads[i])) {
         PetscCall(LamRVEStateCopy(direct->accepted[point], state));
+        direct->jumped[point] = PETSC_FALSE;
+      }
     } else {
       PetscCall(LamRVEStateReset(direct->rve, state));
     }
     PetscCall(RespondAt(direct, point, &loads[i], state, &responses[i]));
+    if (state != direct->scratch && responses[i].jumped) direct->jumped[point] = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
 }
 
+/* Ends a load step. */
 static PetscErrorCode CopyStates(DirectResponder *direct, LamRVEState from[], LamRVEState to[])
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < direct->points; ++i) PetscCall(LamRVEStateCopy(from[i], to[i]));
+  PetscCall(PetscArrayzero(direct->jumped, direct->points));
   PetscFunctionReturn(0);
 }
 
@@ -197,7 +227,7 @@ static PetscErrorCode Destroy(void **ctx)
   PetscCall(LamRVEStateDestroy(&direct->scratch));
   PetscCall(LamRVEStateDestroy(&direct->end));
   PetscCall(PetscFree2(direct->start, direct->first));
-  PetscCall(PetscFree2(direct->accepted, direct->latest));
+  PetscCall(PetscFree3(direct->accepted, direct->latest, direct->jumped));
   PetscCall(PetscFree(direct->water));
   PetscCall(PetscFree(*ctx));
   PetscFunctionReturn(0);
@@ -218,7 +248,7 @@ PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, LamResponder *
   PetscCall(PetscNew(&direct));
   direct->rve = rve;
   direct->points = points;
-  PetscCall(PetscMalloc2(points, &direct->accepted, points, &direct->latest));
+  PetscCall(PetscCalloc3(points, &direct->accepted, points, &direct->latest, points, &direct->jumped));
   for (PetscInt i = 0; i < points; ++i) {
     PetscCall(LamRVEStateCreate(rve, &direct->accepted[i]));
     PetscCall(LamRVEStateCreate(rve, &direct->latest[i]));

@@ -14,6 +14,7 @@ typedef struct {
   LamConsole console; /* the reporter's ctx; first */
   const char *scene_path;
   PetscBool tangent;
+  PetscBool told_smooth; /* that a state is of the smooth law of contact */
   LamRVERun run;
 } Command;
 
@@ -112,10 +113,21 @@ static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, 
   PetscFunctionReturn(0);
 }
 
+/* The first state of the smooth law, unless the scene asks for that law. */
+static void TellSmoothLaw(const LamRVERun *run, const LamResponse *response, Command *command)
+{
+  if (command->told_smooth || !(response->contact_width > 0) || run->scene->micro.sharpness == LAM_SHARPNESS_SMOOTH)
+    return;
+  command->told_smooth = PETSC_TRUE;
+  if (LamAppIsRoot())
+    printf("      by the smooth law of contact, width %.3g of the apothem; of further states contact_width tells\n",
+           (double)response->contact_width);
+}
+
 /* `state` of a LamRVERun; ctx: a Command. */
 static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse responses[2])
 {
-  const Command *command = (const Command *)ctx;
+  Command *command = (Command *)ctx;
   const LamScales *scales = &run->scene->scales;
   LamResponse shown = responses[0];
 
@@ -126,6 +138,7 @@ static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse 
   }
   if (run->scene->inflate) LamTestMeasures(&run->test, &responses[0], shown.load.F, shown.P);
   PetscCall(LamPrintResponseRow(&shown, scales, run->scene->micro.interface, run->solved));
+  TellSmoothLaw(run, &shown, command);
   if (run->second_mesh) PrintSecondMesh(responses);
   if (run->find_failure) LamFailurePrintState(&responses[0], &run->scene->strength, scales);
   if (command->tangent) PrintTangent(&responses[0], scales->stress * 1e-6);

@@ -185,11 +185,9 @@ static void PrintLocalisation(const LamResponse *r, PetscReal MPa)
 
 #define SEEN 0.005 /* share of the contact force that is told */
 
-/* What is not seen in the columns of contact: another law, walls that do not face each other, the end of a branch. */
+/* What is not seen in the columns of contact: walls that do not face each other, the end of a branch. */
 static void PrintOddContact(const LamResponse *response, PetscReal MPa)
 {
-  if (response->contact_width > 0)
-    printf("      by the smooth law of contact, width %.3g of the apothem\n", (double)response->contact_width);
   if (response->third_fraction > SEEN)
     printf("      %.2g %% of the contact force acts between walls that do not face each other at rest\n",
            (double)(100 * response->third_fraction));

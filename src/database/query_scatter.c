@@ -54,16 +54,8 @@ static void EvaluateModel(const LamScatterSearch *search, const LamScattered *st
   const LamExpansion *e = &state->model;
 
   for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - e->x[a];
-  *m = *e;
+  LamExpansionMove(e, search->turned[image], m);
   memcpy(m->x, search->x, sizeof(m->x));
-  for (int a = 0; a < LAM_VARIABLES; a++) {
-    PetscReal slope = 0;
-
-    for (int b = 0; b < LAM_VARIABLES; b++) slope += e->hessian[a][b] * delta[b];
-    m->energy += (e->gradient[a] + 0.5 * slope) * delta[a];
-    m->gradient[a] = e->gradient[a] + slope;
-    m->P33 += e->P33_gradient[a] * delta[a];
-  }
   LamImagesBack(images, image, m->gradient);
   LamImagesBack(images, image, m->P33_gradient);
   LamImagesBack(images, image, delta);

@@ -122,12 +122,31 @@ static PetscErrorCode Join(LamFE2Run *run, LamResponder *responder)
   PetscFunctionReturn(0);
 }
 
+/* Whether the response of a point depends on all increments that the run has gone, of which certificates know only
+   complete steps. */
+static PetscBool HasHistory(const LamFE2Run *run)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (PetscInt t = 0; t < run->tissues.count; t++)
+    has = (PetscBool)(has || LamFE2HoldsModels(run, &run->tissues.tissues[t]));
+  return has;
+}
+
 PetscErrorCode LamFE2Certify(LamFE2Run *run)
 {
   PetscBool contact = PETSC_FALSE;
   LamResponder responder;
 
   PetscFunctionBeginUser;
+  if (HasHistory(run)) {
+    PetscCheck(run->certify != LAM_CERTIFY_ALL, run->comm, PETSC_ERR_USER_INPUT,
+               "%s: reactions of a lamella that breaks cannot be certified: they depend on every increment; leave "
+               "--certify out, and compare with a smaller macro.response.accuracy or --response direct",
+               run->scene_path);
+    PetscCall(LamMacroRefuseCertificate(run->macro, "reactions of a lamella that breaks depend on every increment"));
+    PetscFunctionReturn(0);
+  }
   for (PetscInt t = 0; t < run->tissues.count; t++) {
     LamFE2Tissue *tissue = &run->tissues.tissues[t];
 

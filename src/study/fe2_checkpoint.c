@@ -154,16 +154,18 @@ static PetscErrorCode Write(LamFE2Run *run, LamArchive archive)
   PetscFunctionBeginUser;
   PetscCall(ArchiveIdentity(run, archive, NULL));
   for (PetscInt t = 0; t < run->tissues.count && run->response != LAM_FE2_DIRECT; t++)
-    PetscCall(LamFE2CheckpointRows(run, archive, &run->tissues.tissues[t]));
+    if (!LamFE2HoldsModels(run, &run->tissues.tissues[t]))
+      PetscCall(LamFE2CheckpointRows(run, archive, &run->tissues.tissues[t]));
   PetscCall(LamArchiveShared(archive, "totals", sizeof(run->totals), &run->totals));
   PetscCall(ArchiveSteps(run, archive));
   PetscFunctionReturn(0);
 }
 
-/* A cache without a file does not keep its records, so a run with it cannot be resumed. */
+/* A cache without a file does not keep its records, so a run with it cannot be resumed; states and models of points are
+   in the checkpoint. */
 static PetscBool CanGoOn(const LamFE2Run *run)
 {
-  return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path);
+  return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path || LamFE2AllHoldModels(run));
 }
 
 static PetscErrorCode SaveNow(LamFE2Run *run)

@@ -80,7 +80,8 @@ static PetscErrorCode OpenFiles(LamFE2Run *run)
   PetscFunctionBeginUser;
   if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, mode, run->scene, &run->out));
   if (run->response != LAM_FE2_CACHE || !run->database_path) PetscFunctionReturn(0);
-  for (PetscInt t = 0; t < run->tissues.count; t++) PetscCall(LamFE2OpenTissueFile(&run->tissues.tissues[t]));
+  for (PetscInt t = 0; t < run->tissues.count; t++)
+    if (run->tissues.tissues[t].database) PetscCall(LamFE2OpenTissueFile(&run->tissues.tissues[t]));
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,20 @@
 #include <unistd.h>
 #include "shared_grid.h"
 
+PetscBool LamFE2HoldsModels(const LamFE2Run *run, const LamFE2Tissue *tissue)
+{
+  return (PetscBool)(run->response == LAM_FE2_CACHE && tissue->scene.micro.interface == LAM_INTERFACE_LAMELLA);
+}
+
+PetscBool LamFE2AllHoldModels(const LamFE2Run *run)
+{
+  PetscBool all = PETSC_TRUE;
+
+  for (PetscInt t = 0; t < run->tissues.count; t++)
+    all = (PetscBool)(all && LamFE2HoldsModels(run, &run->tissues.tissues[t]));
+  return all;
+}
+
 /* ---- databases ---- */
 
 /* Loads the database as the resumed run had it: the records listed in the checkpoint, in that order. */
@@ -80,17 +94,22 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
 {
+  const PetscBool models = LamFE2HoldsModels(run, tissue);
   LamMeshTrial trial;
 
   PetscFunctionBeginUser;
-  if (run->response != LAM_FE2_DIRECT) PetscCall(OpenDatabase(run, tissue));
+  if (run->response == LAM_FE2_DATABASE)
+    PetscCall(
+        LamRefuseHistory(run->scene_path, &tissue->scene.micro, "a table",
+                         ", or choose --response cache, with which each material point holds a model, or direct"));
+  if (run->response != LAM_FE2_DIRECT && !models) PetscCall(OpenDatabase(run, tissue));
   PetscCall(LamChooseMesh(&tissue->scene, &trial));
   LamWarnOfMesh(run->comm, &run->reporter, &tissue->scene, &trial);
   PetscCall(LamWarnOfDigits(run->comm, &run->reporter, &tissue->scene.micro, tissue->scene.accuracy));
   LamWarnOfZone(run->comm, &run->reporter, &tissue->scene.micro, &tissue->scene.scales);
   if (tissue->database)
     PetscCall(CheckDatabase(run, tissue));
-  else if (run->response == LAM_FE2_CACHE)
+  else if (run->response == LAM_FE2_CACHE && !models)
     PetscCall(LamDatabaseCreateEmpty(&tissue->scene, &tissue->database));
   PetscFunctionReturn(0);
 }
@@ -102,6 +121,11 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   PetscFunctionBeginUser;
   PetscCall(LamFE2TissuesCreate(run->comm, &run->reporter, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
+  if (run->database_path && LamFE2AllHoldModels(run) && LamIsFirst(run->comm))
+    LamReportNote(&run->reporter,
+                  "%s: is not used: with a lamella that breaks each material point holds a model of its "
+                  "own, since its response depends on what it has been through",
+                  run->database_path);
   /* for the scene's own tissue, as written to the files */
   if (tissues->tissues[0].name[0])
     PetscCall(LamChooseMesh(run->scene, NULL));
@@ -214,18 +238,6 @@ PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamRespo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, &tissue->scene, &tissue->rve));
-  PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
-  if (run->response == LAM_FE2_DIRECT)
-    PetscCall(LamFE2CreateDirect(run, tissue, &tissue->direct));
-  else /* all solves start from the reference, so that they do not depend on the order of the queries */
-    PetscCall(LamRVEResponderCreate(tissue->rve, 0, &tissue->direct));
-  PetscFunctionReturn(0);
-}
-
 /*
   In contact tissue nearly all of abs(P) is P33, from turgor; the part that deforms the body is small, and its relative
   error is ten times as large. Wall meshes coarser than EVEN_ALONG are not that accurate. docs/results/performance.md,
@@ -238,7 +250,22 @@ static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
   const PetscBool contact = (PetscBool)(LamCellsPart(scene->micro.interface) && scene->micro.along >= EVEN_ALONG);
 
   if (scene->response.accuracy > 0) return scene->response.accuracy;
+  if (LamFE2HoldsModels(run, tissue)) return scene->accuracy; /* docs/results/performance.md, FE² that tears */
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;
+}
+
+PetscErrorCode LamFE2CreateSolver(LamFE2Run *run, LamFE2Tissue *tissue)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, &tissue->scene, &tissue->rve));
+  PetscCall(LamRVESetInterrupt(tissue->rve, LamStopInterrupt, NULL));
+  if (run->response == LAM_FE2_DIRECT)
+    PetscCall(LamFE2CreateDirect(run, tissue, &tissue->direct));
+  else if (LamFE2HoldsModels(run, tissue))
+    PetscCall(LamRVEModelResponderCreate(tissue->rve, tissue->points, QueryAccuracy(run, tissue), &tissue->direct));
+  else /* all solves start from the reference, so that they do not depend on the order of the queries */
+    PetscCall(LamRVEResponderCreate(tissue->rve, 0, &tissue->direct));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder)
@@ -246,7 +273,7 @@ PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResp
   PetscFunctionBeginUser;
   if (run->response != LAM_FE2_DATABASE) PetscCall(LamFE2CreateSolver(run, tissue));
   *responder = tissue->direct;
-  if (run->response == LAM_FE2_DIRECT) PetscFunctionReturn(0);
+  if (run->response == LAM_FE2_DIRECT || LamFE2HoldsModels(run, tissue)) PetscFunctionReturn(0);
   if (run->response == LAM_FE2_CACHE) {
     PetscCall(GiveGrid(run, tissue));
     if (run->stopped) PetscFunctionReturn(0);

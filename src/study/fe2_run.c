@@ -23,9 +23,6 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   *finished = PETSC_FALSE;
   run->start = LamClock();
   if (!run->scene) PetscCall(LamSceneRead(run->scene_path, &run->scene));
-  if (run->response != LAM_FE2_DIRECT)
-    PetscCall(
-        LamRefuseHistory(run->scene_path, &run->scene->micro, "a table", ", or solve directly, without a database"));
   ChooseContact(&run->scene->micro);
   for (PetscInt r = 0; r < run->scene->region_count; r++) ChooseContact(&run->scene->regions[r].micro);
   if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);

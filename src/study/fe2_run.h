@@ -94,6 +94,10 @@ void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroStep *step);
 PetscErrorCode LamFE2ExplainTear(LamFE2Run *run);
 
 /* ---- fe2_response.c ---- */
+/* Whether the points of a tissue hold models of their own instead of a cache: those of a lamella that breaks, whose
+   responses depend on what each has been through. */
+PetscBool LamFE2HoldsModels(const LamFE2Run *run, const LamFE2Tissue *tissue);
+PetscBool LamFE2AllHoldModels(const LamFE2Run *run);
 /* Determines the tissues, loads their databases, chooses the meshes of their RVEs; collective. */
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run);
 /* Creates the responder selected by run->response and sets it on the macroscale solver. run->stopped: a stop was

@@ -22,7 +22,7 @@ typedef struct {
   LamKnownRecords known;       /* records of the database file that a resumed run finds there but has not used yet */
   LamNodeChain chain;          /* solves the cache's nodes */
   LamNodeSolver solved, nodes; /* by the chain; by `known`, else by the chain */
-  LamResponder direct, cache;  /* NULL: not in use */
+  LamResponder direct, cache;  /* NULL: not in use; with models of points `direct` holds them */
   LamResponder reference;      /* of certified reactions; NULL: not in use */
 
   /* rank 0 only */

@@ -1,8 +1,8 @@
 /*
   Zoom into the microstructure: the RVE at chosen material points of the last converged state, written to the results.
 
-  The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response it
-  starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
+  The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response, and
+  where the point holds a model, it starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
   the file is the LamStressError between the stress used by the run and the one found: the error of an interpolated or
   blended response, or a sign of another branch.
 
@@ -124,7 +124,8 @@ static PetscErrorCode Fetch(LamFE2Run *run, Zoom *zoom, char **bytes)
   PetscCallMPI(MPI_Bcast(&zoom->tissue, 1, MPIU_INT, owner, run->comm));
   PetscCallMPI(MPI_Bcast(&zoom->angle, 1, MPIU_REAL, owner, run->comm));
   *bytes = NULL;
-  if (run->response != LAM_FE2_DIRECT) PetscFunctionReturn(0);
+  if (run->response != LAM_FE2_DIRECT && !LamFE2HoldsModels(run, &tissues->tissues[zoom->tissue]))
+    PetscFunctionReturn(0);
   direct = tissues->tissues[zoom->tissue].direct;
   PetscCall(LamResponderGetStateSize(direct, &length));
   PetscCall(PetscMalloc1(length, bytes));

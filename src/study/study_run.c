@@ -133,7 +133,7 @@ PetscErrorCode LamStudyFE2(const char scene_path[], const LamFE2Options *options
   PetscBool finished;
 
   PetscFunctionBeginUser;
-  PetscCheck(options->database_path || options->response == LAM_FE2_DIRECT, PETSC_COMM_SELF, PETSC_ERR_ARG_NULL,
+  PetscCheck(options->database_path || options->response != LAM_FE2_DATABASE, PETSC_COMM_SELF, PETSC_ERR_ARG_NULL,
              "response \"%s\" needs a database", LamFE2ResponseNames[options->response]);
   PetscCheck(options->out_path || !options->resume, PETSC_COMM_SELF, PETSC_ERR_ARG_NULL,
              "a run can only be resumed where out_path has its results");

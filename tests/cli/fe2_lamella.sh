@@ -1,4 +1,5 @@
-# fe2 of tissue whose lamella breaks: what it says of damage, energies and the mesh, and that 2 ranks say the same
+# fe2 of tissue whose lamella breaks: what it says of damage, energies and the mesh, that 2 ranks say the same, and models of
+# points nearly
 . "$(dirname "$0")/common.sh"
 
 # scene LAW U END STEPS: a clamped block, whose top moves by U in most of the loads, and back to the share END
@@ -85,4 +86,30 @@ for name in $names; do
   ! grep -q "\"$name\"" out.txt || fail "bonded tissue has $name"
   ! head -1 bonded.csv | grep -q ",$name" || [ "$name" = released ] || fail "bonded tissue has a column $name"
 done
-expect 2 -e 'depend on history.*or solve directly, without a database' "$lamella" fe2 tear.yaml -d tear-table.h5
+expect 2 -e 'depend on history.*--response cache' "$lamella" fe2 tear.yaml -d tear-table.h5 --response database
+
+# with a cache points hold models: the same body but for their error, from fewer solves; a database is of no use to them
+expect 0 -e 'tear-table.h5: is not used' "$lamella" fe2 tear.yaml -d tear-table.h5 -o models.h5
+grep -q '^ *certified  no: reactions of a lamella that breaks' out.txt || fail "certificate: $(cat out.txt)"
+[ ! -e tear-table.h5 ] || fail "a database that is not used was written"
+expect 2 -e 'cannot be certified' "$lamella" fe2 tear.yaml --response cache --certify
+[ -z "$(command -v mpirun)" ] || mpirun -n 2 "$lamella" fe2 tear.yaml --response cache -o two.h5 --quiet >out.txt 2>err.txt ||
+  fail "2 ranks: $(cat err.txt)"
+/usr/bin/python3 - <<'PYTHON' || fail "models give another curve"
+import csv, os
+def curve(name):
+    return list(csv.DictReader(open(f"{name}.csv")))
+def differs(a, b, share):
+    for name in a[0]:
+        if not any(word in name for word in ("R1", "R2", "broken_fraction ", "dissipated", "stored")) and name != "broken_fraction":
+            continue
+        x, y = ([float(row[name] or 0) for row in rows] for rows in (a, b))
+        size = max(map(abs, x))
+        if any(abs(p - q) > share * size for p, q in zip(x, y)):
+            return name, x, y
+direct, models = curve("tear"), curve("models")
+assert not differs(direct, models, 0.02), differs(direct, models, 0.02)
+assert not os.path.exists("two.h5") or not differs(models, curve("two"), 1e-7), "2 ranks"
+total = lambda rows, name: sum(float(row[name]) for row in rows)
+assert 0 < total(models, "solves") < 0.6 * total(direct, "solves"), total(models, "solves")
+PYTHON

@@ -213,6 +213,18 @@ static void DrawOnset(LamCanvas canvas, const LamAxes *axes, const LamReactions 
   if (json_is_number(value)) LamAxesMark(canvas, axes, json_number_value(value), Onset, PETSC_TRUE, name);
 }
 
+/* A line where results begin to depend on the mesh of the body. */
+static void DrawMeshDependent(LamCanvas canvas, const LamAxes *axes, const LamReactions *p)
+{
+  const json_t *load = json_object_get(json_object_get(p->summary, "mesh_dependent"), "load_factor");
+
+  for (PetscInt k = 0; k < p->count && json_is_number(load); k++) {
+    if (PetscAbsReal(p->load[k] - json_number_value(load)) > 1e-9) continue;
+    LamAxesMark(canvas, axes, p->x ? p->x[k] : p->load[k], Onset, PETSC_TRUE, "mesh-dependent");
+    return;
+  }
+}
+
 PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReactions *p)
 {
   const char *side = json_string_value(json_object_get(json_object_get(p->summary, "loaded"), "boundary"));
@@ -232,6 +244,7 @@ PetscErrorCode LamReactionsDraw(LamCanvas canvas, LamRect outer, const LamReacti
   PetscCall(DrawCertified(canvas, &axes, p));
   DrawOnset(canvas, &axes, p, "separation");
   DrawOnset(canvas, &axes, p, "rupture");
+  DrawMeshDependent(canvas, &axes, p);
   for (PetscInt i = 0; i < count; i++) PetscCall(LamSeriesDestroy(&series[i]));
   PetscCall(PetscFree(series));
   PetscFunctionReturn(0);

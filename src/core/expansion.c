@@ -188,6 +188,23 @@ PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpan
   return IsFinite(e);
 }
 
+void LamExpansionMove(const LamExpansion *expansion, const PetscReal x[LAM_VARIABLES], LamExpansion *moved)
+{
+  const LamExpansion e = *expansion;
+
+  *moved = e;
+  memcpy(moved->x, x, sizeof(moved->x));
+  for (int a = 0; a < LAM_VARIABLES; a++) {
+    const PetscReal step = x[a] - e.x[a];
+    PetscReal slope = 0;
+
+    for (int b = 0; b < LAM_VARIABLES; b++) slope += e.hessian[a][b] * (x[b] - e.x[b]);
+    moved->energy += (e.gradient[a] + 0.5 * slope) * step;
+    moved->gradient[a] += slope;
+    moved->P33 += e.P33_gradient[a] * step;
+  }
+}
+
 /* ---- expansion to response ---- */
 
 /* sum_a v_a K_a into the in-plane part of a 3x3 tensor. */

@@ -1,5 +1,5 @@
 /*
-  Second-order model of a record's potential, in variables that are invariant under rotation.
+  Second-order model of the potential of a response, in variables that are invariant under rotation.
 */
 #ifndef LAM_EXPANSION_H
 #define LAM_EXPANSION_H
@@ -24,6 +24,8 @@ typedef struct {
 void LamVariables(const LamLoad *load, PetscReal x[LAM_VARIABLES]);
 /* From a record with fields; PETSC_FALSE if one of its derivatives is unknown. */
 PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpansion *expansion);
+/* The same model at x, with the Hessian of the expansion. `moved` may be `expansion`. */
+void LamExpansionMove(const LamExpansion *expansion, const PetscReal x[LAM_VARIABLES], LamExpansion *moved);
 /*
   The metric of P in its derivatives with respect to C: |P|^2 in the plane = sum_ab v_a B_ab v_b for P = sum v_a K_a,
   K_a = dc_a/dF.
