@@ -223,6 +223,44 @@ PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 
 typedef struct {
   LamRVE rve;
+  const PetscReal *along; /* change of F per share of a path */
+  PetscReal sum, slope, *gradient;
+} Spending;
+
+/* Of D at kappa = delta: dD/dq = (T/delta - dT/ddelta)/4 = -q phi''. */
+static void AddSpent(void *ctx, const LamBondPoint *point)
+{
+  Spending *s = (Spending *)ctx;
+  const LamBond *bond = &s->rve->layer->bond[point->point];
+  const PetscReal weight = s->rve->layer->weight[point->point], slope = -weight * point->step.dd * point->jump.q;
+  LamEdgeBlock block;
+  PetscReal gradient[LAM_EDGE_DOFS];
+
+  s->sum += weight * LamBondSpent(bond, &point->step);
+  if (!(slope > 0.0)) return;
+  SetBlock(s->rve, EdgeOf(point->point), &block);
+  LamEdgeSpread(point->point % LAM_EDGE_POINTS, slope, point->jump.dq, gradient);
+  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
+    const PetscReal *S = block.shift[i / 2], *along = &s->along[3 * (i % 2)];
+
+    s->gradient[2 * block.class[i / 2] + i % 2] += gradient[i];
+    s->slope += gradient[i] * (along[0] * S[0] + along[1] * S[1]);
+  }
+}
+
+PetscReal LamLayerSpent(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal along[9],
+                        PetscReal gradient[], PetscReal *slope)
+{
+  Spending s = {.rve = rve, .along = along, .gradient = gradient};
+
+  for (PetscInt i = 0; i < rve->length; ++i) gradient[i] = 0.0;
+  LamLayerVisitPoints(rve, load->F, y, AddSpent, &s);
+  *slope = s.slope;
+  return s.sum;
+}
+
+typedef struct {
+  LamRVE rve;
   PetscReal energy, *residual;
 } Assembly;
 

@@ -251,6 +251,10 @@ void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscIn
 PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Adds energy, residual and tangent. */
 void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);
+/* Energy dissipated in the step, not divided by V0, and its derivatives: gradient [length], and `slope` for a change
+   `along` of F. */
+PetscReal LamLayerSpent(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal along[9],
+                        PetscReal gradient[], PetscReal *slope);
 /* The history at the start of the step: that of a state. */
 void LamLayerTake(LamRVE rve, const LamRVEState state);
 /* Stores the history at the end of the step, at rve->y. */
