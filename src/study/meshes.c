@@ -135,11 +135,11 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMeshesDissipate(LamMeshes *meshes, const LamDissipationPath *path, PetscReal *share,
+PetscErrorCode LamMeshesDissipate(LamMeshes *meshes, const LamDissipationPath *path, LamDissipationPoint *point,
                                   LamResponse *response)
 {
   PetscFunctionBeginUser;
-  PetscCall(LamRVESolveDissipating(meshes->rve[0], path, share, meshes->state[0], response));
+  PetscCall(LamRVESolveDissipating(meshes->rve[0], path, point, meshes->state[0], response));
   if (LamResponseHasFields(response)) PetscCall(PetscArraycpy(meshes->F, response->load.F, 9));
   if (response->status == LAM_OUT_OF_REACH) meshes->stopped = PETSC_TRUE;
   PetscFunctionReturn(0);

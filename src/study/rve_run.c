@@ -194,8 +194,8 @@ static PetscErrorCode Dissipate(LamRVERun *run, LamResponse *response)
                                    .faces = scene->dissipated_faces};
 
   PetscFunctionBeginUser;
-  PetscCall(LamMeshesDissipate(&run->meshes, &path, &run->share, response));
-  if (response->status == LAM_CONVERGED && run->share < 1) PetscFunctionReturn(0);
+  PetscCall(LamMeshesDissipate(&run->meshes, &path, &run->reached, response));
+  if (response->status == LAM_CONVERGED && run->reached.share < 1) PetscFunctionReturn(0);
   scene->load_count = run->solved + 1;
   scene->dissipating = scene->load_count - first;
   PetscFunctionReturn(0);

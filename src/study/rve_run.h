@@ -40,7 +40,7 @@ typedef struct LamRVERun_s {
   LamBeside csv;          /* with a file: its table for spreadsheets */
   LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
-  PetscReal share;     /* reached of a ramp that is followed by what is dissipated */
+  LamDissipationPoint reached; /* of a ramp that is followed by what is dissipated */
   PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
   PetscInt unknown;    /* number of states without an error estimate */
   PetscInt kinked;     /* number of states in which walls wrinkle on the scale of the mesh */
