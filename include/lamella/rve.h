@@ -117,16 +117,16 @@ typedef struct {
   PetscReal share;      /* of the path */
   PetscBool dissipates; /* the energy decided how far the state went: it is tried first for the next one */
 } LamDissipationPoint;
-LAM_EXPORT PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path,
-                                                 LamDissipationPoint *point, LamRVEState state, LamResponse *response);
+LAM_EXPORT PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path, LamDissipationPoint *point,
+                                                 LamRVEState state, LamResponse *response);
 
 /* Fraction of the walls' volume: if kinked_fraction of a response with LAM_WANT_WALLS exceeds it, walls wrinkle on the
    scale of the mesh, and the error estimate of bonded tissue is increased and a guess. */
 #define LAM_KINKED_SHARE 0.005
 
-/* Solves the load of `from`, a state of `rve` with a solution, on another mesh of the same tissue, from the interpolated
-   solution. LAM_NOT_CONVERGED if Newton's method does not converge from there: the branch of `from` is another one or
-   has ended on that mesh. `state` belongs to `finer`. Not for sealed cells. */
+/* Solves the load of `from`, a state of `rve` with a solution, on another mesh of the same tissue, from the
+   interpolated solution. LAM_NOT_CONVERGED if Newton's method does not converge from there: the branch of `from` is
+   another one or has ended on that mesh. `state` belongs to `finer`. Not for sealed cells. */
 LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE finer, LamRVEState state,
                                            LamResponse *response);
 
@@ -134,8 +134,8 @@ LAM_EXPORT PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE 
   Estimates the error of a state's P, as LamWholeError, from the same load on a mesh with half as many
   elements again along the faces and through the walls. It costs three to four times a bonded state, twice a contact
   state. LamRVEEstimateError sets response->error_estimate of the response that belongs to `state`, and adds its time.
-  The estimate is NaN for sealed cells and where the finer mesh has no state near. With a lamella it solves all states of
-  a program on its own mesh: call it for each of them, in order, from the first one. Borrows `rve`.
+  The estimate is NaN for sealed cells and where the finer mesh has no state near. With a lamella it solves all states
+  of a program on its own mesh: call it for each of them, in order, from the first one. Borrows `rve`.
 */
 typedef struct LamRVEEstimate_s *LamRVEEstimate;
 LAM_EXPORT PetscErrorCode LamRVEEstimateCreate(LamRVE rve, LamRVEEstimate *estimate);

@@ -1,10 +1,10 @@
 #include "part.h"
 
 struct LamPartSystem_s {
-  const LamPart *part;    /* borrowed */
-  PetscInt n, *unknown;   /* [n] of the whole matrix, increasing */
-  PetscInt *index;        /* [unknowns of the whole matrix] among them; -1: does not move */
-  PetscInt couplings;     /* of the smooth law, for which the pattern was made */
+  const LamPart *part;           /* borrowed */
+  PetscInt n, *unknown;          /* [n] of the whole matrix, increasing */
+  PetscInt *index;               /* [unknowns of the whole matrix] among them; -1: does not move */
+  PetscInt couplings;            /* of the smooth law, for which the pattern was made */
   PetscInt *row, *column, *from; /* upper rows, and where their values come from */
   PetscReal *values;
   LamFactor factor;

@@ -25,7 +25,8 @@ PetscErrorCode LamPartSystemCreate(LamRVE rve, const LamPart *part, LamPartSyste
 PetscErrorCode LamPartSystemDestroy(LamPartSystem *system);
 PetscInt LamPartSystemUnknowns(const LamPartSystem system, const PetscInt **unknown);
 /* Factors the part's matrix + shift 1. */
-PetscErrorCode LamPartSystemFactor(LamRVE rve, LamPartSystem system, PetscReal shift, PetscInt *negative, PetscBool *ok);
+PetscErrorCode LamPartSystemFactor(LamRVE rve, LamPartSystem system, PetscReal shift, PetscInt *negative,
+                                   PetscBool *ok);
 PetscErrorCode LamPartSystemSolve(LamPartSystem system, PetscInt count, const PetscReal rhs[], PetscReal solution[]);
 /* image [count] := (K x) in the rows of what moves; x [n] is zero outside the cells that are summed. */
 void LamPartSystemMultiply(LamRVE rve, const LamPartSystem system, const PetscReal x[], PetscReal image[]);

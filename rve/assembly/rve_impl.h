@@ -73,10 +73,10 @@ enum { LAM_SYSTEM_BASE, LAM_SYSTEM_GROWN, LAM_SYSTEM_EXACT, LAM_SYSTEMS };
 
 /* Cells to which sums over elements, edges of the lamella and walls are restricted (part.c). */
 typedef struct {
-  PetscInt moving, count; /* cells that move, and all: those beside them, too */
-  PetscInt *cells;        /* [count] those that move first */
-  PetscBool *moves;       /* [cell] */
-  PetscBool *near;        /* [cell] moves or is beside */
+  PetscInt moving, count;                       /* cells that move, and all: those beside them, too */
+  PetscInt *cells;                              /* [count] those that move first */
+  PetscBool *moves;                             /* [cell] */
+  PetscBool *near;                              /* [cell] moves or is beside */
   PetscInt moving_unknowns, unknowns, *unknown; /* positions of those that move, and of all, in the same order */
 } LamPart;
 
@@ -267,8 +267,8 @@ void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscIn
 PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Adds energy, residual and tangent. */
 void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);
-/* Energy dissipated in the step, not divided by V0, its derivatives: gradient [length], and `slope` for a change `along`
-   of F, and by_cell [cell], that at the faces of a cell. */
+/* Energy dissipated in the step, not divided by V0, its derivatives: gradient [length], and `slope` for a change
+   `along` of F, and by_cell [cell], that at the faces of a cell. */
 PetscReal LamLayerSpent(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal along[9],
                         PetscReal gradient[], PetscReal *slope, PetscReal by_cell[]);
 /* The history at the start of the step: that of a state. */

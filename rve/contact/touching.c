@@ -370,8 +370,8 @@ static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
     for (PetscInt j = GROUP * b; j < end[1]; ++j) {
       const LamWallSpan *other = &walls->span[p->other * n + j];
 
-      if (!walls->gone[p->other * n + j] && !(p->itself && Between(n, i, j) < walls->apart) && Meet(&near, &other->box) &&
-          !IsBeyond(p, other, here.low, here.high))
+      if (!walls->gone[p->other * n + j] && !(p->itself && Between(n, i, j) < walls->apart) &&
+          Meet(&near, &other->box) && !IsBeyond(p, other, here.low, here.high))
         VisitSpans(p, i, j);
     }
   }

@@ -9,9 +9,9 @@
   a cell has two control points: the contour is straight up to them and rounds the corner within a sixth of a span. For
   wide laws they lie at (1 - bevel) v + bevel m, with the nodes m next to it.
 
-  Walls that can be cut (mesh.h) have such a pair at each cut, whose points are the nodes on both sides of it; the middle
-  of an element beside a cut is a control point as it is, so that a span depends on LAM_SPAN_NODES nodes. Once the cut is
-  torn both contours end at it, and the span between its sides is not there any more.
+  Walls that can be cut (mesh.h) have such a pair at each cut, whose points are the nodes on both sides of it; the
+  middle of an element beside a cut is a control point as it is, so that a span depends on LAM_SPAN_NODES nodes. Once
+  the cut is torn both contours end at it, and the span between its sides is not there any more.
 
   Points of a contour are spread evenly, LAM_TOUCH_POINTS in each span. Nothing distinguishes master from slave: each
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.

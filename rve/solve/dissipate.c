@@ -6,8 +6,8 @@
 
     c = dD/dy,       D: energy dissipated in the step,
 
-  of the first guess, a step along b = -K^-1 dr/ds at fixed damage that dissipates the energy asked for. D only grows, so
-  the path of states is followed through limits of F and snap-back.
+  of the first guess, a step along b = -K^-1 dr/ds at fixed damage that dissipates the energy asked for. D only grows,
+  so the path of states is followed through limits of F and snap-back.
 
   At fixed s and opening a state is a minimum of the energy, under a force -mu c on the lamella; s is sought for which
   mu = 0. With a = -K^-1 r and e = K^-1 c,
@@ -15,9 +15,9 @@
     dy = a - mu e,  mu = c.a / c.e        lowers the energy at fixed s, with c.dy = 0: shortened until it does,
     dy = a + ds b,  ds = -c.a / c.b       Newton's step of y and s, taken where the rest is small against mu c.
 
-  K is convex on motions with c.dy = 0 if it has no negative eigenvalue and c.e > 0, or one and c.e < 0. Where it is not,
-  or a step was short, the lamella's upper bound serves (cohesive.h). The state found is stable under the control if its
-  K is so, with c of the state.
+  K is convex on motions with c.dy = 0 if it has no negative eigenvalue and c.e > 0, or one and c.e < 0. Where it is
+  not, or a step was short, the lamella's upper bound serves (cohesive.h). The state found is stable under the control
+  if its K is so, with c of the state.
 
   Where less than the energy asked for is dissipated, s is prescribed: a step at most `most` farther.
 
@@ -29,8 +29,8 @@
 #include "part.h"
 
 #define ITERATIONS 60
-#define LIMIT 0.15      /* apothems: longest step */
-#define EXCESS 1.5      /* of the energy asked for, up to which a step of prescribed s stands */
+#define LIMIT 0.15 /* apothems: longest step */
+#define EXCESS 1.5 /* of the energy asked for, up to which a step of prescribed s stands */
 #define HALVINGS 6
 #define BISECTIONS 12
 #define ARMIJO 1e-4
@@ -38,32 +38,32 @@
 #define SHORT 0.3       /* share of a step after which the upper bound serves */
 #define REST 0.3        /* of the residual, beside mu c, below which s is changed */
 #define PROGRESS 0.5
-#define HALF 0.5        /* share of tau that the first guess of a prescribed s dissipates: in the end it is more */
-#define FIRST 0.1       /* share of tau that the first guess dissipates, ... */
-#define STAGES 5        /* ... and steps from there to tau, ... */
-#define SHORTER 0.05    /* ... of at most this length */
-#define WORTH 0.1       /* energy dissipated at a cell, of the largest, that makes it one that breaks */
-#define LAYERS 2        /* of cells around these that move in the window */
-#define WINDOW 2        /* least ratio of all cells to those */
+#define HALF 0.5     /* share of tau that the first guess of a prescribed s dissipates: in the end it is more */
+#define FIRST 0.1    /* share of tau that the first guess dissipates, ... */
+#define STAGES 5     /* ... and steps from there to tau, ... */
+#define SHORTER 0.05 /* ... of at most this length */
+#define WORTH 0.1    /* energy dissipated at a cell, of the largest, that makes it one that breaks */
+#define LAYERS 2     /* of cells around these that move in the window */
+#define WINDOW 2     /* least ratio of all cells to those */
 #define PART_TOLERANCE 1e-5
 #define PART_ITERATIONS 30
-#define ROUNDS 12       /* of the window, and then all unknowns once, ... */
-#define SOME 8          /* iterations, where the window would be too large, */
-#define FINE 1e-2       /* ... until this residual */
-#define IDLE 1          /* Newton's steps without progress after which s is kept again */
+#define ROUNDS 12 /* of the window, and then all unknowns once, ... */
+#define SOME 8    /* iterations, where the window would be too large, */
+#define FINE 1e-2 /* ... until this residual */
+#define IDLE 1    /* Newton's steps without progress after which s is kept again */
 
 typedef struct {
   LamRVE rve;
   const LamDissipationPath *path;
-  PetscReal along[9]; /* D */
-  LamBorder *border;  /* its load and step are those of the iterate */
-  PetscReal face;     /* energy of fracture of a face */
-  PetscReal share;    /* of the iterate */
+  PetscReal along[9];     /* D */
+  LamBorder *border;      /* its load and step are those of the iterate */
+  PetscReal face;         /* energy of fracture of a face */
+  PetscReal share;        /* of the iterate */
   PetscReal spent, slope; /* D and D_s there */
-  PetscReal *gradient; /* [length] D_y */
-  PetscReal *c;        /* [n]; zero where s is prescribed */
+  PetscReal *gradient;    /* [length] D_y */
+  PetscReal *c;           /* [n]; zero where s is prescribed */
   PetscReal energy, rounding;
-  PetscReal *R, *column; /* [LAM_F_COUNT][n], dr/ds [n] */
+  PetscReal *R, *column;     /* [LAM_F_COUNT][n], dr/ds [n] */
   PetscReal *rhs, *solution; /* [3][n]: of a, b and e */
   PetscReal ca, cb, ce;      /* products */
   LamPartSystem window;      /* NULL: all unknowns move */
@@ -153,7 +153,8 @@ static PetscErrorCode Assemble(Tearing *t, PetscBool *valid)
   PetscCall(LamAssembleGradient(rve, &t->border->load, Lq, Lqq, t->R));
   for (PetscInt i = 0; i < rve->linear->n; ++i) {
     t->column[i] = 0.0;
-    for (PetscInt q = 0; q < LAM_F_COUNT; ++q) t->column[i] += t->R[q * rve->linear->n + i] * t->along[LamFComponent[q]];
+    for (PetscInt q = 0; q < LAM_F_COUNT; ++q)
+      t->column[i] += t->R[q * rve->linear->n + i] * t->along[LamFComponent[q]];
   }
   PetscFunctionReturn(0);
 }
@@ -274,10 +275,11 @@ static PetscErrorCode Report(const Tearing *t, const char tier[], PetscInt it, P
 {
   PetscFunctionBeginUser;
   if (t->rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
-                           "  %-5s %3d  residual %10.3e  rest %10.3e  largest step %9.3e  share %.8g  spent %.4g of it%s\n",
-                           tier, (int)it, (double)t->norm, (double)t->rest, (double)largest, (double)t->share,
-                           (double)(t->spent / tau), t->rve->layer->secant ? "  bound" : ""));
+    PetscCall(
+        PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR,
+                     "  %-5s %3d  residual %10.3e  rest %10.3e  largest step %9.3e  share %.8g  spent %.4g of it%s\n",
+                     tier, (int)it, (double)t->norm, (double)t->rest, (double)largest, (double)t->share,
+                     (double)(t->spent / tau), t->rve->layer->secant ? "  bound" : ""));
   PetscFunctionReturn(0);
 }
 
@@ -469,10 +471,9 @@ static PetscErrorCode MoveOutside(Tearing *t, const LamPart *part, PetscReal ds)
   PetscFunctionReturn(0);
 }
 
-/* A better guess: the same in a window of cells around what opens, the others going along b. With s prescribed they stay
-   where they are. */
-static PetscErrorCode InWindow(Tearing *t, const LamPart *part, PetscReal tau, PetscBool is_held,
-                               PetscBool advances)
+/* A better guess: the same in a window of cells around what opens, the others going along b. With s prescribed they
+   stay where they are. */
+static PetscErrorCode InWindow(Tearing *t, const LamPart *part, PetscReal tau, PetscBool is_held, PetscBool advances)
 {
   const LamRVE rve = t->rve;
   const PetscInt n = rve->linear->n, *unknown;
@@ -514,8 +515,8 @@ static PetscErrorCode Approach(Tearing *t, PetscReal tau, PetscBool is_held, Pet
   PetscCall(LamPartCreate(rve, seed, LAYERS, &part));
   *serves = (PetscBool)(WINDOW * part->moving < cells && !rve->linear->lumens && t->path->to.cohesion == 0.0);
   if (rve->monitor)
-    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  window of %d of %d cells%s\n", (int)part->moving, (int)cells,
-                           *serves ? "" : ": too large"));
+    PetscCall(PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  window of %d of %d cells%s\n", (int)part->moving,
+                           (int)cells, *serves ? "" : ": too large"));
   if (*serves)
     PetscCall(InWindow(t, part, tau, is_held, advances));
   else if (advances)
@@ -545,15 +546,15 @@ static PetscErrorCode CheckStability(Tearing *t, PetscBool is_held, PetscBool *s
 }
 
 /* One step from a state, with s prescribed or not; *found: a stable state is in rve->y. */
-static PetscErrorCode Step(Tearing *t, LamRVEState at, PetscReal share, PetscReal tau, PetscReal most, PetscBool is_held,
-                           PetscBool *found, PetscInt *negative)
+static PetscErrorCode Step(Tearing *t, LamRVEState at, PetscReal share, PetscReal tau, PetscReal most,
+                           PetscBool is_held, PetscBool *found, PetscInt *negative)
 {
   const PetscReal limit = t->path->faces * t->face; /* of a step of prescribed s */
 
   PetscFunctionBeginUser;
   Begin(t, at, share);
   PetscCall(Guess(t, (is_held ? HALF : FIRST) * tau, most, is_held, found));
-  t->stuck = (PetscBool)!*found;
+  t->stuck = (PetscBool) !*found;
   *found = t->free = PETSC_FALSE;
   t->norm = PETSC_INFINITY;
   for (PetscInt k = 0; k < ROUNDS && !*found && !t->stuck; ++k) {
@@ -561,7 +562,10 @@ static PetscErrorCode Step(Tearing *t, LamRVEState at, PetscReal share, PetscRea
 
     if (!(is_held && k == 0) && t->norm > FINE)
       PetscCall(Approach(t, is_held ? limit : tau, is_held, (PetscBool)(!is_held && k == 0), &serves));
-    PetscCall(Iterate(t, is_held ? limit : tau, LamNewtonTolerance(t->rve), is_held, serves || (is_held && k == 0) ? 1 : k + 1 < ROUNDS ? SOME : ITERATIONS,
+    PetscCall(Iterate(t, is_held ? limit : tau, LamNewtonTolerance(t->rve), is_held,
+                      serves || (is_held && k == 0) ? 1
+                      : k + 1 < ROUNDS              ? SOME
+                                                    : ITERATIONS,
                       found));
   }
   if (*found && !is_held && t->share > share + EXCESS * most) *found = PETSC_FALSE; /* the load ends the step */
@@ -617,7 +621,8 @@ PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path
   PetscCall(Create(rve, path, &t));
   PetscCall(Find(&t, before, point, response));
   PetscCall(LamEndResponse(rve, &t.border->load, state, response));
-  if (response->status == LAM_CONVERGED) response->work = state->work = before->work + LamStepWorkOf(before, state).work;
+  if (response->status == LAM_CONVERGED)
+    response->work = state->work = before->work + LamStepWorkOf(before, state).work;
   PetscCall(Destroy(&t));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;

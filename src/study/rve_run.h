@@ -41,9 +41,9 @@ typedef struct LamRVERun_s {
   LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
   LamDissipationPoint reached; /* of a ramp that is followed by what is dissipated */
-  PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
-  PetscInt unknown;    /* number of states without an error estimate */
-  PetscInt kinked;     /* number of states in which walls wrinkle on the scale of the mesh */
+  PetscInt inaccurate;         /* number of states whose estimated error exceeds the prescribed accuracy */
+  PetscInt unknown;            /* number of states without an error estimate */
+  PetscInt kinked;             /* number of states in which walls wrinkle on the scale of the mesh */
   PetscReal most_kinked;
   PetscBool warned_of_suction; /* of contact tissue that has come apart */
   PetscReal start;             /* set by the caller */
