@@ -34,9 +34,14 @@
 #define HALVINGS 6
 #define BISECTIONS 12
 #define ARMIJO 1e-4
-#define LEAST_STEP 1e-4 /* least share of a step */
-#define SHORT 0.3       /* share of a step after which the upper bound serves */
-#define REST 0.3        /* of the residual, beside mu c, below which s is changed */
+#define GROWTH 6.0 /* of shifts, as in minimise.c */
+#define DECAY 5.0
+#define LEAST_SHIFT 1e-7
+#define CORRECTIONS 2
+#define WORTH_CORRECTING 0.2 /* least share of a step that is corrected */
+#define LEAST_STEP 1e-4      /* least share of a step */
+#define SHORT 0.3            /* share of a step after which the upper bound serves */
+#define REST 0.3             /* of the residual, beside mu c, below which s is changed */
 #define PROGRESS 0.5
 #define HALF 0.5     /* share of tau that the first guess of a prescribed s dissipates: in the end it is more */
 #define FIRST 0.1    /* share of tau that the first guess dissipates, ... */
@@ -65,10 +70,13 @@ typedef struct {
   PetscReal energy, rounding;
   PetscReal *R, *column;     /* [LAM_F_COUNT][n], dr/ds [n] */
   PetscReal *rhs, *solution; /* [3][n]: of a, b and e */
+  PetscReal shift;           /* of the matrix, where walls are not convex either */
   PetscReal ca, cb, ce;      /* products */
   LamPartSystem window;      /* NULL: all unknowns move */
   PetscReal *far;            /* [n] of the window: b outside it */
   PetscReal *by_cell;        /* [cell] D at the faces of a cell */
+  PetscReal *y, *step;       /* [length] before a correction */
+  LamElementStress *stress;  /* [element] likewise */
   PetscReal norm, rest;      /* of the residual, and without mu c */
   PetscBool free;            /* Newton's steps of y and s are taken */
   PetscBool stuck;           /* no step was found */
@@ -87,6 +95,7 @@ static PetscErrorCode Create(LamRVE rve, const LamDissipationPath *path, Tearing
   PetscCall(PetscMalloc5(rve->length, &t->gradient, LAM_F_COUNT * n, &t->R, n, &t->column, 3 * n + 6, &t->rhs, 3 * n,
                          &t->solution));
   PetscCall(PetscCalloc1(n, &t->c));
+  PetscCall(PetscMalloc3(rve->length, &t->y, rve->length, &t->step, rve->mesh.element_count, &t->stress));
   PetscCall(PetscMalloc1(rve->mesh.cell_count, &t->by_cell));
   t->rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
   PetscFunctionReturn(0);
@@ -98,6 +107,7 @@ static PetscErrorCode Destroy(Tearing *t)
   t->rve->layer->secant = PETSC_FALSE;
   PetscCall(LamBorderDestroy(&t->border));
   PetscCall(PetscFree(t->c));
+  PetscCall(PetscFree3(t->y, t->step, t->stress));
   PetscCall(PetscFree(t->by_cell));
   PetscCall(PetscFree5(t->gradient, t->R, t->column, t->rhs, t->solution));
   PetscFunctionReturn(0);
@@ -165,7 +175,7 @@ static PetscErrorCode SolveAll(Tearing *t, PetscInt *negative, PetscBool *ok)
   const PetscInt n = rve->linear->n;
 
   PetscFunctionBeginUser;
-  PetscCall(LamRVEFactor(rve, LAM_PROXIMAL, negative, ok));
+  PetscCall(LamRVEFactor(rve, LAM_PROXIMAL + t->shift, negative, ok));
   if (!*ok) PetscFunctionReturn(0);
   *negative -= LamExpectedNegative(rve);
   for (PetscInt i = 0; i < n; ++i) {
@@ -185,7 +195,7 @@ static PetscErrorCode SolveWindow(Tearing *t, PetscInt *negative, PetscBool *ok)
   PetscReal *rhs = t->rhs, *solution = t->rhs + 3 * count; /* the window has less than half of the cells */
 
   PetscFunctionBeginUser;
-  PetscCall(LamPartSystemFactor(rve, t->window, LAM_PROXIMAL, negative, ok));
+  PetscCall(LamPartSystemFactor(rve, t->window, LAM_PROXIMAL + t->shift, negative, ok));
   if (!*ok) PetscFunctionReturn(0);
   LamPartSystemMultiply(rve, t->window, t->far, rhs + count);
   for (PetscInt k = 0; k < count; ++k) {
@@ -199,19 +209,27 @@ static PetscErrorCode SolveWindow(Tearing *t, PetscInt *negative, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* a, b and e, with the matrix of the iterate; *convex: on motions with c.dy = 0. */
+/* a, b and e, with the matrix of the iterate; *convex: on motions with c.dy = 0, also with a shift
+   if the tangent is the upper bound. */
 static PetscErrorCode Solve(Tearing *t, PetscBool *convex, PetscBool *ok)
 {
+  const PetscReal diagonal = LamLargestDiagonal(t->rve->linear);
+  const PetscReal least = PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(t->rve));
   const PetscInt n = t->rve->linear->n;
   PetscInt negative;
 
   PetscFunctionBeginUser;
-  PetscCall(t->window ? SolveWindow(t, &negative, ok) : SolveAll(t, &negative, ok));
-  if (!*ok) PetscFunctionReturn(0);
-  t->ca = LamInnerProduct(n, t->c, t->solution);
-  t->cb = LamInnerProduct(n, t->c, t->solution + n);
-  t->ce = LamInnerProduct(n, t->c, t->solution + 2 * n);
-  *convex = (PetscBool)((negative == 0 && t->ce >= 0.0) || (negative == 1 && t->ce < 0.0));
+  t->shift = t->shift / DECAY < least ? 0.0 : t->shift / DECAY;
+  for (;;) {
+    PetscCall(t->window ? SolveWindow(t, &negative, ok) : SolveAll(t, &negative, ok));
+    if (!*ok) PetscFunctionReturn(0);
+    t->ca = LamInnerProduct(n, t->c, t->solution);
+    t->cb = LamInnerProduct(n, t->c, t->solution + n);
+    t->ce = LamInnerProduct(n, t->c, t->solution + 2 * n);
+    *convex = (PetscBool)((negative == 0 && t->ce >= 0.0) || (negative == 1 && t->ce < 0.0));
+    if (*convex || !t->rve->layer->secant || t->shift > diagonal) break;
+    t->shift = t->shift > 0.0 ? GROWTH * t->shift : least;
+  }
   t->rest = NormOf(t, t->ce == 0.0 ? 0.0 : t->ca / t->ce);
   PetscFunctionReturn(0);
 }
@@ -319,25 +337,81 @@ static PetscErrorCode Guess(Tearing *t, PetscReal tau, PetscReal most, PetscBool
   PetscFunctionReturn(0);
 }
 
+/* a for the residual of the iterate, with the factor of the one before. */
+static PetscErrorCode SolveAgain(Tearing *t)
+{
+  const LamRVE rve = t->rve;
+  const PetscInt n = rve->linear->n, *unknown = NULL;
+  const PetscInt count = t->window ? LamPartSystemUnknowns(t->window, &unknown) : n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < count; ++k) t->rhs[k] = -rve->residual[(unknown ? unknown[k] : k) + 2];
+  if (!t->window) {
+    PetscCall(LamLinearSolve(rve->linear, 1, t->rhs, t->solution));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(LamPartSystemSolve(t->window, 1, t->rhs, t->rhs + count));
+  for (PetscInt k = 0; k < count; ++k) t->solution[unknown[k]] = t->rhs[count + k];
+  PetscFunctionReturn(0);
+}
+
+/* Takes a step of `alpha` that did not lower the energy, because it violates the stiff constraints of the walls, and
+   corrects it with the same factor. *moved: the energy is then at most `most`. */
+static PetscErrorCode Correct(Tearing *t, PetscReal alpha, PetscReal most, PetscBool *moved)
+{
+  const LamRVE rve = t->rve;
+  const PetscInt n = rve->linear->n, couplings = rve->smooth->count;
+
+  PetscFunctionBeginUser;
+  *moved = PETSC_FALSE;
+  PetscCall(PetscArraycpy(t->y, rve->y, rve->length));
+  PetscCall(PetscArraycpy(t->step, rve->step, rve->length));
+  PetscCall(PetscArraycpy(t->stress, rve->stress, rve->mesh.element_count));
+  Take(t, 0.0, alpha);
+  for (PetscInt k = 0; k < CORRECTIONS && !*moved; ++k) {
+    PetscReal energy, largest;
+    PetscBool valid;
+
+    PetscCall(LamAssemble(rve, &t->border->load, rve->y, &energy, rve->residual, &valid));
+    if (!valid || rve->smooth->count != couplings) break; /* the matrix has grown: there is no factor */
+    PetscCall(SolveAgain(t));
+    SetStep(t, 1.0, 0.0, t->ce == 0.0 ? 0.0 : LamInnerProduct(n, t->c, t->solution) / t->ce, &largest);
+    if (largest > LIMIT || LamValidStep(rve, &t->border->load, t->border, 1.0, 0.5) == 0.0) break;
+    Take(t, 0.0, 1.0);
+    PetscCall(LamAssembleEnergy(rve, &t->border->load, rve->y, &energy, &valid));
+    *moved = (PetscBool)(valid && energy <= most);
+  }
+  if (*moved) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(rve->y, t->y, rve->length));
+  PetscCall(PetscArraycpy(rve->step, t->step, rve->length));
+  PetscCall(PetscArraycpy(rve->stress, t->stress, rve->mesh.element_count));
+  PetscFunctionReturn(0);
+}
+
 /* Takes the part of a step at fixed s that lowers the energy. *alpha: that part. */
 static PetscErrorCode Descend(Tearing *t, PetscReal largest, PetscReal *alpha)
 {
   const LamRVE rve = t->rve;
   const PetscReal slope = PetscMin(0.0, LamInnerProduct(rve->linear->n, rve->residual + 2, rve->step + 2));
+  PetscBool corrected = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (*alpha = PetscMin(1.0, LIMIT / largest); *alpha > LEAST_STEP; *alpha *= 0.5) {
+    const PetscReal most = t->energy + ARMIJO * *alpha * slope + t->rounding;
     PetscReal energy;
-    PetscBool valid;
+    PetscBool valid, lower;
 
     LamTrialPosition(rve, *alpha);
     PetscCall(LamAssembleEnergy(rve, &t->border->load, rve->trial, &energy, &valid));
-    if (valid && energy <= t->energy + ARMIJO * *alpha * slope + t->rounding) break;
+    lower = (PetscBool)(valid && energy <= most);
+    if (lower) Take(t, 0.0, *alpha);
+    if (valid && !lower && !corrected && *alpha >= WORTH_CORRECTING) {
+      corrected = PETSC_TRUE;
+      PetscCall(Correct(t, *alpha, most, &lower));
+    }
+    if (lower) PetscFunctionReturn(0);
   }
-  if (*alpha > LEAST_STEP)
-    Take(t, 0.0, *alpha);
-  else
-    *alpha = 0.0;
+  *alpha = 0.0;
   PetscFunctionReturn(0);
 }
 
@@ -610,6 +684,8 @@ PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path
 
   PetscFunctionBeginUser;
   PetscCheck(rve->layer, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "only tissue with a lamella dissipates");
+  PetscCheck(!rve->mesh.cuts, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "cells whose walls tear burst between states: their turgor is not under control of what is dissipated");
   PetscCheck(path->most > 0.0 && path->most <= 1.0 && path->faces > 0.0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "a step of %g of the path and %g faces; both must be positive, the first at most 1", (double)path->most,
              (double)path->faces);

@@ -32,8 +32,8 @@ static const LamKey load_keys[] = {
      .help = "Equal steps; with `dissipation`, the most of them."},
     {MAP("load[].ramp.dissipation"), .default_words = "none", .example = "{faces: 0.5}",
      .help =
-         "In the last entry, with law `lamella` and all of `F` given: each state breaks so much of the lamella, and F "
-         "goes back along the ramp where that is needed, or is one step of `steps` farther where less breaks. At most "
+         "In the last entry, with law `lamella` and all of `F` given: each state breaks about so much of the lamella, and "
+         "F goes back along the ramp where that is needed, or is one step of `steps` farther where less breaks. At most "
          "`steps` states, fewer if the end is reached."},
     {REAL("load[].ramp.dissipation.faces"), REQUIRED, FROM(0.001), TO(1000), .example = "0.5",
      .help = "Energies of fracture, in tension, of a whole face."},
