@@ -5,6 +5,7 @@
     turgor.c       areas of lumens, pressures of sealed ones
     smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
     lamella.c      the lamella between facing walls, which breaks
+    part.c         sums and linear systems of a part of the cells
     contact.c      the exact law between facing walls: pairs, junctions, active set
     interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
