@@ -166,6 +166,7 @@ static PetscErrorCode Step(LamDissipation *t, LamRVEState at, PetscReal share, P
   LamDissipationBegin(t, at, share);
   PetscCall(LamDissipationGuess(t, (is_held ? HALF : LAM_DISSIPATION_FIRST) * tau, most, is_held, found));
   t->stuck = (PetscBool) !*found;
+  t->is_held = is_held;
   *found = t->free = PETSC_FALSE;
   t->norm = PETSC_INFINITY;
   for (PetscInt k = 0; k < ROUNDS && !*found && !t->stuck; ++k) {
@@ -181,6 +182,7 @@ static PetscErrorCode Step(LamDissipation *t, LamRVEState at, PetscReal share, P
   }
   if (*found && !is_held && t->share > share + LAM_DISSIPATION_EXCESS * most)
     *found = PETSC_FALSE; /* the load ends the step */
+  t->is_held = PETSC_FALSE;
   if (*found) PetscCall(CheckStability(t, is_held, found, negative));
   PetscFunctionReturn(0);
 }

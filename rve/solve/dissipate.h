@@ -35,6 +35,7 @@ typedef struct {
   PetscReal *y, *step;       /* [length] before a correction */
   LamElementStress *stress;  /* [element] likewise */
   PetscReal norm, rest;      /* of the residual, and without mu c */
+  PetscBool is_held;         /* s is prescribed: only a is solved for */
   PetscBool free;            /* Newton's steps of y and s are taken */
   PetscBool stuck;           /* no step was found */
 } LamDissipation;

@@ -137,6 +137,7 @@ PetscErrorCode LamDissipationIterate(LamDissipation *t, PetscReal tau, PetscReal
     if (!ok || (!convex && rve->layer->secant)) break;
     if (!convex) {
       rve->layer->secant = PETSC_TRUE;
+      --it; /* no step has been taken */
       continue;
     }
     idle = t->free && t->norm > PROGRESS * previous ? idle + 1 : 0;

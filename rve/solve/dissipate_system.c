@@ -79,7 +79,7 @@ PetscErrorCode LamDissipationAssemble(LamDissipation *t, PetscBool *valid)
   if (!*valid) PetscFunctionReturn(0);
   t->norm = NormOf(t, 0.0);
   t->spent = LamLayerSpent(rve, &t->border->load, rve->y, t->along, t->gradient, &t->slope, t->by_cell);
-  if (t->window) PetscFunctionReturn(0); /* the column does not change there */
+  if (t->window || t->is_held) PetscFunctionReturn(0); /* the column does not change there, or is not needed */
   PetscCall(LamAssembleGradient(rve, &t->border->load, Lq, Lqq, t->R));
   for (PetscInt i = 0; i < rve->linear->n; ++i) {
     t->column[i] = 0.0;
@@ -100,10 +100,11 @@ static PetscErrorCode SolveAll(LamDissipation *t, PetscInt *negative, PetscBool 
   *negative -= LamExpectedNegative(rve);
   for (PetscInt i = 0; i < n; ++i) {
     t->rhs[i] = -rve->residual[i + 2];
+    if (t->is_held) continue;
     t->rhs[n + i] = -t->column[i];
     t->rhs[2 * n + i] = t->c[i];
   }
-  PetscCall(LamLinearSolve(rve->linear, 3, t->rhs, t->solution));
+  PetscCall(LamLinearSolve(rve->linear, t->is_held ? 1 : 3, t->rhs, t->solution));
   PetscFunctionReturn(0);
 }
 
