@@ -101,6 +101,26 @@ LAM_EXPORT PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVESta
 LAM_EXPORT PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStressControl *control,
                                            LamRVEState state, LamResponse *response);
 
+/*
+  The next state of tissue with a lamella on a straight path of F, controlled by what it dissipates: behind a limit F
+  goes back along the path as far as equilibrium asks. A state dissipates the energy of fracture of `faces` faces, or is
+  the step `most` farther along the path where that dissipates less. A state that would fall at its F is thus followed
+  and converged: stable where F follows what is dissipated.
+  point: in, of `state`; out, of the solution. `state` is replaced by it, as in LamRVESolve; it must be a solution. The
+  contact law is the smooth one.
+*/
+typedef struct {
+  LamLoad from, to; /* turgor and cohesion: those of `to` */
+  PetscReal most;   /* share of the path, at most 1 */
+  PetscReal faces;  /* energies of fracture in tension of a whole face */
+} LamDissipationPath;
+typedef struct {
+  PetscReal share;      /* of the path */
+  PetscBool dissipates; /* the energy decided how far the state went: it is tried first for the next one */
+} LamDissipationPoint;
+LAM_EXPORT PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path, LamDissipationPoint *point,
+                                                 LamRVEState state, LamResponse *response);
+
 /* Fraction of the walls' volume: if kinked_fraction of a response with LAM_WANT_WALLS exceeds it, walls wrinkle on the
    scale of the mesh, and the error estimate of bonded tissue is increased and a guess. */
 #define LAM_KINKED_SHARE 0.005

@@ -67,6 +67,7 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2], element;
 
+    if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
     LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                      &element, valid);
@@ -108,6 +109,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
     PetscReal u[LAM_ELEMENT_NODES][2];
     LamElementResult element;
 
+    if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
     LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, valid);
@@ -138,6 +140,7 @@ void LamUpdateStresses(LamRVE rve, const LamLoad *load, const PetscReal y[], con
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2], du[LAM_ELEMENT_NODES][2];
 
+    if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
     LamGatherElement(rve, dF, dy, e, du);
     LamElementUpdateStress(&rve->geometry[e], LamWallOf(rve, e), (const PetscReal(*)[2])u, (const PetscReal(*)[2])du,
@@ -150,6 +153,7 @@ PetscBool LamPositionsAreValid(LamRVE rve, const LamLoad *load, const PetscReal 
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) {
     PetscReal u[LAM_ELEMENT_NODES][2];
 
+    if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
     if (!LamElementIsValid(&rve->geometry[e], (const PetscReal(*)[2])u, load->F[8])) return PETSC_FALSE;
   }

@@ -148,7 +148,7 @@ void LamLayerSetMatrix(LamRVE rve)
 
     for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
       for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++pair)
-        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes->class[j]);
+        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes -> class[j]);
   }
 }
 
@@ -167,6 +167,17 @@ static void GatherEdge(LamRVE rve, const PetscReal F[9], const PetscReal y[], co
     }
 }
 
+/* Whether an edge has nodes that move. */
+static PetscBool IsInPart(LamRVE rve, PetscInt edge)
+{
+  const PetscInt faces = EdgeOf(rve->layer->between);
+  const LamContactFace *face = &rve->contact->faces[edge / rve->mesh.along];
+
+  if (!rve->part) return PETSC_TRUE;
+  if (edge >= faces) return LamMoves(rve, (edge - faces) / (rve->mesh.through * rve->mesh.cuts));
+  return (PetscBool)(LamMoves(rve, face->cell) || LamMoves(rve, face->other));
+}
+
 void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdgeVisitor visitor, void *ctx)
 {
   const LamLayer *layer = rve->layer;
@@ -176,6 +187,7 @@ void LamLayerVisit(LamRVE rve, const PetscReal F[9], const PetscReal y[], LamEdg
     PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
     LamEdgeBlock block = {.edge = edge, .nodes = &layer->nodes[edge]};
 
+    if (!IsInPart(rve, edge)) continue;
     GatherEdge(rve, F, y, block.nodes, u, X);
     LamEdgeEvaluate((const PetscReal(*)[2])X, (const PetscReal(*)[2])u, &layer->bond[first], block.nodes->length,
                     layer->secant, &block.sum);
@@ -192,6 +204,7 @@ void LamLayerVisitPoints(LamRVE rve, const PetscReal F[9], const PetscReal y[], 
     const PetscInt at = edge < faces ? edge % rve->mesh.along : (edge - faces) % rve->mesh.through;
     PetscReal u[LAM_EDGE_NODES][2], X[LAM_EDGE_NODES][2];
 
+    if (!IsInPart(rve, edge)) continue;
     GatherEdge(rve, F, y, &layer->nodes[edge], u, X);
     for (PetscInt q = 0; q < LAM_EDGE_POINTS; ++q) {
       LamBondPoint point = {.point = LAM_EDGE_POINTS * edge + q,
@@ -234,6 +247,49 @@ PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
 
   LamLayerVisitPoints(rve, load->F, y, AddEnergy, &energy);
   return energy.sum;
+}
+
+typedef struct {
+  LamRVE rve;
+  const PetscReal *along; /* change of F per share of a path */
+  PetscReal sum, slope, *gradient, *by_cell;
+} Spending;
+
+/* Of D at kappa = delta: dD/dq = (T/delta - dT/ddelta)/4 = -q phi''. */
+static void AddSpent(void *ctx, const LamBondPoint *point)
+{
+  Spending *s = (Spending *)ctx;
+  const LamBond *bond = &s->rve->layer->bond[point->point];
+  const PetscReal weight = s->rve->layer->weight[point->point], slope = -weight * point->step.dd * point->jump.q;
+  const PetscReal spent = weight * LamBondSpent(bond, &point->step);
+  const LamEdgeNodes *nodes = &s->rve->layer->nodes[EdgeOf(point->point)];
+  PetscReal gradient[LAM_EDGE_DOFS];
+
+  s->sum += spent;
+  if (point->face >= 0) {
+    s->by_cell[s->rve->contact->faces[point->face].cell] += spent;
+    s->by_cell[s->rve->contact->faces[point->face].other] += spent;
+  }
+  if (!(slope > 0.0)) return;
+  LamEdgeSpread(point->point % LAM_EDGE_POINTS, slope, point->jump.dq, gradient);
+  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i) {
+    const PetscReal *S = nodes->shift[i / 2], *along = &s->along[3 * (i % 2)];
+
+    s->gradient[2 * nodes->class[i / 2] + i % 2] += gradient[i];
+    s->slope += gradient[i] * (along[0] * S[0] + along[1] * S[1]);
+  }
+}
+
+PetscReal LamLayerSpent(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal along[9],
+                        PetscReal gradient[], PetscReal *slope, PetscReal by_cell[])
+{
+  Spending s = {.rve = rve, .along = along, .gradient = gradient, .by_cell = by_cell};
+
+  for (PetscInt i = 0; i < rve->length; ++i) gradient[i] = 0.0;
+  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c) by_cell[c] = 0.0;
+  LamLayerVisitPoints(rve, load->F, y, AddSpent, &s);
+  *slope = s.slope;
+  return s.sum;
 }
 
 typedef struct {

@@ -5,6 +5,7 @@
     turgor.c       areas of lumens, pressures of sealed ones
     smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
     lamella.c      the lamella between facing walls, which breaks
+    part.c         sums and linear systems of a part of the cells
     contact.c      the exact law between facing walls: pairs, junctions, active set
     interrupt.c    factorisations that check the interrupt; refusals
     stability.c    softest mode of a state
@@ -71,6 +72,15 @@ typedef struct {
    The last two are created when needed. */
 enum { LAM_SYSTEM_BASE, LAM_SYSTEM_GROWN, LAM_SYSTEM_EXACT, LAM_SYSTEMS };
 
+/* Cells to which sums over elements, edges of the lamella and walls are restricted (part.c). */
+typedef struct {
+  PetscInt moving, count;                       /* cells that move, and all: those beside them, too */
+  PetscInt *cells;                              /* [count] those that move first */
+  PetscBool *moves;                             /* [cell] */
+  PetscBool *near;                              /* [cell] moves or is beside */
+  PetscInt moving_unknowns, unknowns, *unknown; /* positions of those that move, and of all, in the same order */
+} LamPart;
+
 struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
@@ -103,6 +113,7 @@ struct LamRVE_s {
   void *interrupt_ctx;                    /* borrowed */
   PetscBool near_only;         /* a solve that does not continue the branch of the exact law ends, without a state */
   PetscBool looks_back;        /* the solve looks for the end of a branch before it: no further one does */
+  const LamPart *part;         /* borrowed; NULL: all cells */
   PetscReal energy;            /* of the last assembly */
   PetscBool consistent;        /* residual and linear.values are evaluated at y with the wall stresses of y */
   PetscBool moved;             /* y has been moved affinely since the last solution */
@@ -135,6 +146,12 @@ static inline PetscReal LamWholeTurgorFactor(LamRVE rve, PetscInt cell)
 static inline PetscReal LamTurgorFactor(LamRVE rve, PetscInt cell)
 {
   return LamHasBurst(rve, cell) ? 0.0 : LamWholeTurgorFactor(rve, cell);
+}
+
+/* Whether a cell moves, in sums over a part. */
+static inline PetscBool LamMoves(LamRVE rve, PetscInt cell)
+{
+  return (PetscBool)(!rve->part || rve->part->moves[cell]);
 }
 
 /* Whether any lumen can be under pressure, at any positions. */
@@ -252,6 +269,10 @@ void LamLayerJump(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscIn
 PetscReal LamLayerEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[]);
 /* Adds energy, residual and tangent. */
 void LamLayerAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy, PetscReal residual[]);
+/* Energy dissipated in the step, not divided by V0, its derivatives: gradient [length], and `slope` for a change
+   `along` of F, and by_cell [cell], that at the faces of a cell. */
+PetscReal LamLayerSpent(LamRVE rve, const LamLoad *load, const PetscReal y[], const PetscReal along[9],
+                        PetscReal gradient[], PetscReal *slope, PetscReal by_cell[]);
 /* The history at the start of the step: that of a state. */
 void LamLayerTake(LamRVE rve, const LamRVEState state);
 /*

@@ -5,7 +5,7 @@
   further, the pattern grows by the pairs of nodes met, with a margin; each solve starts again from the first pattern,
   so that its result depends on load and state alone.
 */
-#include "rve_impl.h"
+#include "part.h"
 
 #define SLIDING 6 /* nodes by which facing walls may slide before the pattern grows */
 #define MARGIN 2  /* nodes around walls that meet */
@@ -414,8 +414,7 @@ PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscRea
     ForgetEntries(smooth);
   }
   do {
-    PetscCall(PetscArrayzero(residual, rve->length));
-    PetscCall(PetscArrayzero(rve->linear->values, rve->linear->nonzeros));
+    PetscCall(LamPartClear(rve, residual));
     a.energy = 0.0;
     a.missing = PETSC_FALSE;
     LamSmoothVisit(rve, load, y, LAM_TOUCH_TANGENT, AddBlock, &a);

@@ -82,6 +82,15 @@ void LamEdgePlaceEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscR
   Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
 }
 
+void LamEdgeSpread(PetscInt q, PetscReal factor, const PetscReal dz[4], PetscReal gradient[LAM_EDGE_DOFS])
+{
+  PetscReal weight[LAM_EDGE_NODES][2];
+
+  WeighNodes(place[q], weight);
+  for (PetscInt i = 0; i < LAM_EDGE_DOFS; ++i)
+    gradient[i] = factor * (weight[i / 2][0] * dz[i % 2] + weight[i / 2][1] * dz[2 + i % 2]);
+}
+
 /* Adds w (phi(q(z)) + 1/2 pressing r(z)) and its derivatives. */
 static void AddPoint(const LamJump *jump, const LamCohesiveStep *step, PetscReal pressing, PetscReal w,
                      const PetscReal weight[LAM_EDGE_NODES][2], LamCohesiveSum *sum)

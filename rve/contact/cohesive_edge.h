@@ -75,6 +75,9 @@ static inline void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal 
 /* The jump alone, at a place s in [0, 1] of the edge. */
 void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, PetscReal beta, LamJump *jump);
 
+/* From the derivatives of a function of (jump, tangent) at point q, times a factor, those in the nodes. */
+void LamEdgeSpread(PetscInt q, PetscReal factor, const PetscReal dz[4], PetscReal gradient[LAM_EDGE_DOFS]);
+
 typedef struct {
   PetscReal energy, f[LAM_EDGE_DOFS], K[LAM_EDGE_DOFS][LAM_EDGE_DOFS]; /* dof = 2 node + component */
 } LamCohesiveSum;

@@ -262,6 +262,7 @@ void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
 {
   (void)PetscArraycpy(walls->F, F, 9);
   for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    if (walls->near && !walls->near[loop / 2]) continue;
     for (PetscInt i = 0; i < walls->spans; ++i) PlaceControl(walls, F, y, loop, i, walls->x[loop * walls->spans + i]);
     for (PetscInt i = 0; i < walls->spans; ++i) PlaceSpan(walls, loop, i);
     walls->box[loop] = nothing;
@@ -442,11 +443,16 @@ static void VisitImages(Pair *p)
 
 void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visitor, void *ctx)
 {
+  static const PetscReal none[2] = {0.0, 0.0};
   Pair p = {.walls = walls, .width = width, .visitor = visitor, .ctx = ctx};
 
-  for (p.loop = 0; p.loop < walls->loops; ++p.loop)
+  for (p.loop = 0; p.loop < walls->loops; ++p.loop) {
+    const LamBox near = Moved(&walls->box[p.loop], none, PetscMax(width, DEEPEST));
+
+    if (walls->near && !walls->near[p.loop / 2]) continue;
     for (p.other = p.loop % 2 ? p.loop : 0; p.other < walls->loops; p.other += p.loop % 2 ? walls->loops : 2)
-      VisitImages(&p);
+      if (!walls->is_patch || Meet(&near, &walls->box[p.other])) VisitImages(&p);
+  }
 }
 
 PetscBool LamTouchIsFacing(const LamWalls *walls, const LamTouching *touch)

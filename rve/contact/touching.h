@@ -60,6 +60,7 @@ typedef struct {
   PetscReal *weight;                     /* [loop][span][point] reference length */
   PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
   LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
+  const PetscBool *near;                 /* [cell] whose walls are placed and visited; borrowed; NULL: all */
   /* of the positions last placed */
   PetscReal (*x)[2]; /* [loop][span] control points: span k lies between k and k + 1 */
   LamWallSpan *span; /* [loop][span] */

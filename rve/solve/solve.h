@@ -9,6 +9,7 @@
     contact_start.c contact_find.c contact_path.c     contact: initial guesses, a state at a load, load paths
     contact_jump.c                        whether the branch of the state before has ended
     lamella_step.c                        work and jumps of steps that break the lamella
+    dissipate.c dissipate_*.c dissipate.h paths of F that are controlled by what the lamella dissipates
     nested.c                              initial guess from the solution on a coarser mesh
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
     estimate.c                            error estimate of P from a finer mesh

@@ -28,7 +28,15 @@ static const LamKey load_keys[] = {
     {STRESS_TENSOR("load[].ramp.P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
      .help = "Stress at the end of the ramp, as `P`; it goes straight from the one prescribed before, from 0 where "
              "none was."},
-    {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10", .help = "Equal steps."},
+    {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10",
+     .help = "Equal steps; with `dissipation`, the most of them."},
+    {MAP("load[].ramp.dissipation"), .default_words = "none", .example = "{faces: 0.5}",
+     .help =
+         "In the last entry, with law `lamella` and all of `F` given: each state breaks about so much of the lamella, and "
+         "F goes back along the ramp where that is needed, or is one step of `steps` farther where less breaks. At most "
+         "`steps` states, fewer if the end is reached."},
+    {REAL("load[].ramp.dissipation.faces"), REQUIRED, FROM(0.001), TO(1000), .example = "0.5",
+     .help = "Energies of fracture, in tension, of a whole face."},
     {STRESS("load[].turgor"), INTO(LamLoad, turgor), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
      .help = "Turgor of this entry's states."},
     {STRESS("load[].cohesion"), INTO(LamLoad, cohesion), FROM(0),
@@ -117,6 +125,7 @@ LamLoad LamLoadAfter(const LamLoad *load, const LamStressControl *control, const
 /* The F and P of an entry, or those at the end of its ramp. */
 typedef struct {
   const LamNode *F, *P;
+  const LamNode *dissipation; /* NULL: not prescribed */
   PetscInt states;
 } Target;
 
@@ -154,7 +163,7 @@ static PetscErrorCode ReadTarget(const LamNode *entry, Target *target)
   const LamNode *reference = LamNodeFind(entry, "reference");
 
   PetscFunctionBeginUser;
-  *target = (Target){F, P, 1};
+  *target = (Target){.F = F, .P = P, .states = 1};
   LamSceneCheckName(inflate || !reference, reference, "says what stresses count from beside inflate: true; write that");
   if (inflate) {
     LamSceneCheck(inflate->value.number[0] != 0.0, inflate, "is what an entry without it is; leave it out");
@@ -175,6 +184,7 @@ static PetscErrorCode ReadTarget(const LamNode *entry, Target *target)
   target->F = LamNodeFind(ramp, "to");
   target->P = LamNodeFind(ramp, "P");
   target->states = (PetscInt)LamNodeFind(ramp, "steps")->value.number[0];
+  target->dissipation = LamNodeFind(ramp, "dissipation");
   PetscFunctionReturn(0);
 }
 
@@ -228,6 +238,24 @@ static PetscErrorCode BuildInflated(const LamNode *entry, LamScene *scene)
   PetscFunctionReturn(0);
 }
 
+/* A ramp whose states are those of a dissipated energy. */
+static PetscErrorCode BuildDissipation(const LamNode *entry, const Target *target, LamScene *scene)
+{
+  const LamNode *node = target->dissipation;
+
+  PetscFunctionBeginUser;
+  if (!node) PetscFunctionReturn(0);
+  LamSceneCheckName(scene->micro.interface == LAM_INTERFACE_LAMELLA, node,
+                    "needs law: lamella, whose energy of fracture is dissipated; leave it out, or write that law");
+  LamSceneCheckName(!target->P, node, "stands beside a prescribed stress; give all of F, or leave it out");
+  LamSceneCheckName(!entry->next, node, "is for the last entry: where its ramp ends is not known before");
+  LamSceneCheckName(scene->load_count > 0, node,
+                    "needs a state to start from; write an entry before this one, such as {F: [[1, 0], [0, 1]]}");
+  scene->dissipating = target->states;
+  scene->dissipated_faces = LamNodeFind(node, "faces")->value.number[0];
+  PetscFunctionReturn(0);
+}
+
 /* Appends the states of an entry after scene->load_count. */
 static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
 {
@@ -244,6 +272,7 @@ static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
   PetscCall(ReadTarget(entry, &target));
   PetscCall(LamSceneReadControl(target.F, target.P, scene->scales.stress, &end));
   PetscCall(LamSceneCheckF(target.F));
+  PetscCall(BuildDissipation(entry, &target, scene));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
   /* from the inflated tissue F = I is known, and no stress is prescribed */
   if (scene->load_count > (scene->inflate ? 1 : 0) && scene->controls) before = scene->controls[scene->load_count - 1];

@@ -135,6 +135,16 @@ PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamS
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamMeshesDissipate(LamMeshes *meshes, const LamDissipationPath *path, LamDissipationPoint *point,
+                                  LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESolveDissipating(meshes->rve[0], path, point, meshes->state[0], response));
+  if (LamResponseHasFields(response)) PetscCall(PetscArraycpy(meshes->F, response->load.F, 9));
+  if (response->status == LAM_OUT_OF_REACH) meshes->stopped = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 #define SAME_ENERGY 1e-9 /* C1 + C2: of equal states */
 
 /* Whether a state from another start is to replace one: that has failed, or the other has less energy by the same law.

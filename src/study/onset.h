@@ -38,6 +38,9 @@ PetscErrorCode LamMeshesSeal(LamMeshes *meshes, const LamScene *scene, const Lam
 */
 PetscErrorCode LamMeshesSolve(LamMeshes *meshes, const LamLoad *load, const LamStressControl *control,
                               LamResponse responses[2]);
+/* The next state of a ramp that is followed by what is dissipated, on one mesh (LamRVESolveDissipating). */
+PetscErrorCode LamMeshesDissipate(LamMeshes *meshes, const LamDissipationPath *path, LamDissipationPoint *point,
+                                  LamResponse *response);
 /* Of contact tissue on one mesh: solves the load of the response again, from the undeformed tissue by both strategies.
    State and response become those of lowest energy; states of different laws of contact are not compared. */
 PetscErrorCode LamMeshesSearch(LamMeshes *meshes, LamStrategy strategy, LamResponse *response);

@@ -47,6 +47,14 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
 
   PetscFunctionBeginUser;
   if (run->scene->inflate) run->readings = PETSC_TRUE;
+  if (run->scene->dissipating) {
+    PetscCheck(!run->second_mesh && !run->find_onset && !run->find_failure && !run->global, PETSC_COMM_SELF,
+               PETSC_ERR_USER_INPUT,
+               "%s: ramp.dissipation: its loads are not known before: --second-mesh, --onset, --failure and --global "
+               "do not go with it",
+               run->scene->path);
+    run->no_estimate = PETSC_TRUE; /* another mesh finds other loads */
+  }
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene->path);
   PetscCall(LamPlanMake(run->scene, &plan));
@@ -169,14 +177,41 @@ static PetscErrorCode StartFromInflated(LamRVERun *run, const LamResponse *infla
   PetscFunctionReturn(0);
 }
 
+/* Whether the next state is one of a ramp that is followed by what is dissipated. */
+static PetscBool Dissipates(const LamRVERun *run)
+{
+  return (PetscBool)(run->solved >= run->scene->load_count - run->scene->dissipating);
+}
+
+/* The next state of such a ramp, which ends where its end is reached or a state is not found. */
+static PetscErrorCode Dissipate(LamRVERun *run, LamResponse *response)
+{
+  LamScene *scene = run->scene;
+  const PetscInt first = scene->load_count - scene->dissipating;
+  const LamDissipationPath path = {.from = scene->loads[first - 1],
+                                   .to = scene->loads[scene->load_count - 1],
+                                   .most = 1 / (PetscReal)scene->dissipating,
+                                   .faces = scene->dissipated_faces};
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMeshesDissipate(&run->meshes, &path, &run->reached, response));
+  if (response->status == LAM_CONVERGED && run->reached.share < 1) PetscFunctionReturn(0);
+  scene->load_count = run->solved + 1;
+  scene->dissipating = scene->load_count - first;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SolveStates(LamRVERun *run)
 {
   PetscFunctionBeginUser;
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 
-    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
-                             responses));
+    if (Dissipates(run))
+      PetscCall(Dissipate(run, responses));
+    else
+      PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
+                               responses));
     if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
     if (run->meshes.stopped) break;
     if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));

@@ -40,9 +40,10 @@ typedef struct LamRVERun_s {
   LamBeside csv;          /* with a file: its table for spreadsheets */
   LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
-  PetscInt inaccurate; /* number of states whose estimated error exceeds the prescribed accuracy */
-  PetscInt unknown;    /* number of states without an error estimate */
-  PetscInt kinked;     /* number of states in which walls wrinkle on the scale of the mesh */
+  LamDissipationPoint reached; /* of a ramp that is followed by what is dissipated */
+  PetscInt inaccurate;         /* number of states whose estimated error exceeds the prescribed accuracy */
+  PetscInt unknown;            /* number of states without an error estimate */
+  PetscInt kinked;             /* number of states in which walls wrinkle on the scale of the mesh */
   PetscReal most_kinked;
   PetscBool warned_of_suction; /* of contact tissue that has come apart */
   PetscReal start;             /* set by the caller */
