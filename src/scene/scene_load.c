@@ -247,6 +247,8 @@ static PetscErrorCode BuildDissipation(const LamNode *entry, const Target *targe
   if (!node) PetscFunctionReturn(0);
   LamSceneCheckName(scene->micro.interface == LAM_INTERFACE_LAMELLA, node,
                     "needs law: lamella, whose energy of fracture is dissipated; leave it out, or write that law");
+  LamSceneCheckName(!LamWallsTear(&scene->micro), node,
+                    "does not go with strength.wall_fracture_energy: cells burst in jumps; leave one of them out");
   LamSceneCheckName(!target->P, node, "stands beside a prescribed stress; give all of F, or leave it out");
   LamSceneCheckName(!entry->next, node, "is for the last entry: where its ramp ends is not known before");
   LamSceneCheckName(scene->load_count > 0, node,
