@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Measured (docs/theory/database.md, Points that break): medians of the error over the sum of the tractions' errors,
+/* Measured (docs/theory/lamella.md, Models of material points): medians of the error over the sum of the tractions' errors,
    and over the square of the distance. */
 static const PetscReal BRANCH_SHARE = 0.15, FIRST_CURVATURE = 75;
 static const PetscReal LEAST_CURVATURE = 40, MOST_CURVATURE = 1000;
