@@ -97,11 +97,11 @@ struct LamRVE_s {
   LamElementStress *stress;     /* [element]: independent stresses of the current iteration */
   LamLinear *linear;            /* in use; one of `systems` */
   LamLinear systems[LAM_SYSTEMS];
-  LamSmooth *smooth;        /* the smooth law of contact; NULL for bonded tissue; owned */
-  LamContact *contact;      /* the exact law; NULL for bonded tissue; owned */
-  LamLayer *layer;          /* the lamella of law `lamella`, else NULL; owned */
-  LamBondRates *rates;      /* solves are for the model of a material point, and set these; NULL: they are not; borrowed */
-  LamRVE bonded;            /* two_step: the same tissue with bonded walls, created at its first use; owned */
+  LamSmooth *smooth;   /* the smooth law of contact; NULL for bonded tissue; owned */
+  LamContact *contact; /* the exact law; NULL for bonded tissue; owned */
+  LamLayer *layer;     /* the lamella of law `lamella`, else NULL; owned */
+  LamBondRates *rates; /* solves are for the model of a material point, and set these; NULL: they are not; borrowed */
+  LamRVE bonded;       /* two_step: the same tissue with bonded walls, created at its first use; owned */
   LamRVEState bonded_state; /* of `bonded`; owned */
   LamSeal seal;
   PetscInt ndof;                          /* 2 class_count */

@@ -5,8 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Measured (docs/theory/database.md, Points that break): medians of the error over the sum of the tractions' errors,
-   and over the square of the distance. */
+/* Of the sum of the tractions' errors, and of the square of the distance: chosen from the measured medians, 0.13 and
+   45, so that early steps, cheap and of small reactions, are the more accurate (docs/theory/lamella.md, Models of
+   material points). */
 static const PetscReal BRANCH_SHARE = 0.15, FIRST_CURVATURE = 75;
 static const PetscReal LEAST_CURVATURE = 40, MOST_CURVATURE = 1000;
 static const PetscReal JUMPED_CURVATURE = 200; /* at least, behind a jump: its branch begins near an end */

@@ -250,7 +250,7 @@ static PetscReal QueryAccuracy(const LamFE2Run *run, const LamFE2Tissue *tissue)
   const PetscBool contact = (PetscBool)(LamCellsPart(scene->micro.interface) && scene->micro.along >= EVEN_ALONG);
 
   if (scene->response.accuracy > 0) return scene->response.accuracy;
-  if (LamFE2HoldsModels(run, tissue)) return scene->accuracy; /* docs/results/performance.md, FE² that tears */
+  if (LamFE2HoldsModels(run, tissue)) return scene->accuracy; /* docs/results/performance.md, Bodies that tear */
   return run->response == LAM_FE2_CACHE && contact ? 0.1 * scene->accuracy : scene->accuracy;
 }
 
