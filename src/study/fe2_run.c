@@ -23,6 +23,11 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   *finished = PETSC_FALSE;
   run->start = LamClock();
   if (!run->scene) PetscCall(LamSceneRead(run->scene_path, &run->scene));
+  PetscCheck(run->response == LAM_FE2_DIRECT || !LamWallsTear(&run->scene->micro), PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT,
+             "%s: strength.wall_fracture_energy: models of material points do not know cells that burst; choose "
+             "--response direct, or leave it out",
+             run->scene->path);
   ChooseContact(&run->scene->micro);
   for (PetscInt r = 0; r < run->scene->region_count; r++) ChooseContact(&run->scene->regions[r].micro);
   if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);

@@ -142,6 +142,8 @@ warned build 's/law: bonded/law: lamella, strength: 0.05 MPa, fracture_energy: 1
 bad 2 'bad.yaml: rve.interface.law: lamella: its responses depend on history, which a table does not have; write' build bad.yaml -d out.h5
 edited fe2 's/law: bonded/law: lamella, strength: 0.05 MPa, fracture_energy: 1 J\/m^2/'
 bad 2 'bad.yaml: rve.interface.law: lamella: .*; write law: bonded or contact' fe2 bad.yaml --response database -d db.h5
+sed 's/^macro:/strength: {wall: 1 MPa, wall_fracture_energy: 5 J\/m^2}\n&/' bad.yaml >tearing.yaml
+bad 2 'tearing.yaml: strength.wall_fracture_energy: models of material points do not know cells that burst; choose' fe2 tearing.yaml --response cache
 bad 2 'rve.yaml: has no block `macro`, which describes' fe2 rve.yaml -o out.h5
 bad 2 'rve.yaml: has no block `process`, which says' process rve.yaml -o out.h5
 bad 2 'rve.yaml: has no block `map`, which says' map rve.yaml -o out.h5
