@@ -3,6 +3,7 @@
 . "$(dirname "$0")/common.sh"
 set -e -o pipefail
 command -v script >/dev/null || exit 77
+script -qec true probe.txt >/dev/null 2>&1 </dev/null || exit 77 # no pseudo-terminals here
 
 tissue >s.yaml <<'YAML'
 sample: {stretch: {min: 0, max: 0.05}, turgor: {min: 0.01 MPa, max: 0.03 MPa}, accuracy: 0.1}
