@@ -39,3 +39,9 @@ for map in map-stress map-turgor-cohesion; do
   grep -qE '^  S separation +[1-9]' out.txt || fail "$map: no separation: $(cat out.txt)"
   grep -qE '^  R rupture +[1-9]' out.txt || fail "$map: no rupture: $(cat out.txt)"
 done
+
+# walls that could tear hold, and the lamella gives way (docs/results/tearing.md)
+expect 0 "$lamella" tear "$scenes/walls-tear.yaml" --modes opening --turgor "0.05 MPa" --json --quiet
+number strength | awk '!($1 > 0.0243 && $1 < 0.0249) { exit 1 }' || fail "strength: $(number strength)"
+number energy | awk '!($1 > 0.46 && $1 < 0.475) { exit 1 }' || fail "energy: $(number energy)"
+grep -q '"burst_fraction": *0\.0' out.txt && ! grep -q '"burst_fraction": *[1-9]' out.txt || fail "cells burst"
