@@ -148,7 +148,7 @@ void LamLayerSetMatrix(LamRVE rve)
 
     for (PetscInt i = 0; i < LAM_EDGE_NODES; ++i)
       for (PetscInt j = i; j < LAM_EDGE_NODES; ++j, ++pair)
-        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes -> class[j]);
+        rve->layer->first[edge][pair] = LamLinearBlock(rve->linear, nodes->class[i], nodes->class[j]);
   }
 }
 

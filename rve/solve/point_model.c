@@ -79,8 +79,8 @@ static PetscReal Distance2(const LamExpansion *from, const LamExpansion *to)
   PetscReal sum = 0.0;
 
   for (PetscInt a = 0; a < 3; ++a) sum += 0.25 * PetscSqr(to->x[a] - from->x[a]);
-  return sum + PetscSqr(0.011 * (to->x[3] - from->x[3])) +
-         PetscSqr(0.5 * (to->x[3] + to->x[4] - from->x[3] - from->x[4]));
+  return sum + PetscSqr(LAM_TURGOR_WEIGHT * (to->x[3] - from->x[3])) +
+         PetscSqr(LAM_SUCTION_WEIGHT * (to->x[3] + to->x[4] - from->x[3] - from->x[4]));
 }
 
 /* Work of P, turgor and suction from the solve, by the trapezoidal rule, as LamStepWorkOf. */

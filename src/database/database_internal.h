@@ -93,7 +93,7 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record);
 
 /*
   Distances of scattered records from a query, dC/2 being the Green strain, so that the distance is a strain:
-    d^2 = |dc|^2 / 4 + (TURGOR_WEIGHT dp)^2, in contact tissue + (SUCTION_WEIGHT (dp + dg))^2
+    d^2 = |dc|^2 / 4 + (LAM_TURGOR_WEIGHT dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2
 */
 typedef PetscReal LamScatterVector[LAM_VARIABLES];
 typedef PetscReal LamScatterMatrix[LAM_VARIABLES][LAM_VARIABLES];

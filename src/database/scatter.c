@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define TURGOR_WEIGHT 0.011 /* strain per pressure in units of C1 + C2, as is SUCTION_WEIGHT */
-#define SUCTION_WEIGHT 0.5
 #define TIE 1e-14 /* strain: distances that differ by less are equal, and the first record or image is used */
 
 /* Bits of the images that coincide with no earlier one; on a mirror plane of the lattice they coincide in pairs. */
@@ -76,8 +74,8 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record)
 
 static LamScatterMetric MakeMetric(LamDatabase db)
 {
-  const PetscReal turgor = PetscSqr(TURGOR_WEIGHT);
-  const PetscReal suction = db->header.micro.interface == LAM_INTERFACE_BONDED ? 0 : PetscSqr(SUCTION_WEIGHT);
+  const PetscReal turgor = PetscSqr(LAM_TURGOR_WEIGHT);
+  const PetscReal suction = db->header.micro.interface == LAM_INTERFACE_BONDED ? 0 : PetscSqr(LAM_SUCTION_WEIGHT);
 
   return (LamScatterMetric){0.25, turgor + suction, suction, suction};
 }

@@ -56,3 +56,15 @@ LamResponse SolveContactTissue(LamLoad load)
 
   return SolveTissue(&micro, load);
 }
+
+void CopyPacked(LamRVEState from, LamRVEState to)
+{
+  size_t size;
+  char *bytes;
+
+  CHECK(LamRVEStateSize(from, &size));
+  CHECK(PetscMalloc1(size, &bytes));
+  CHECK(LamRVEStatePack(from, bytes));
+  CHECK(LamRVEStateUnpack(bytes, to));
+  CHECK(PetscFree(bytes));
+}

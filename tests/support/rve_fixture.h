@@ -9,6 +9,8 @@ LamRVE NewRVE(const LamMicrostructure *micro);
 /* With lumens that may be sealed. */
 LamRVE NewSealable(const LamMicrostructure *micro);
 LamRVEState NewState(LamRVE rve);
+/* Copies a state by its packed bytes. */
+void CopyPacked(LamRVEState from, LamRVEState to);
 /* Solves from F = I in one go. */
 LamResponse SolveFromReference(LamRVE rve, LamLoad load);
 LamResponse SolveTissue(const LamMicrostructure *micro, LamLoad load);

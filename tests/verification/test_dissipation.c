@@ -60,7 +60,7 @@ static double F22(const LamResponse *r)
   return r->load.F[4];
 }
 
-TEST(the_patch_is_torn_apart)
+TEST(ThePatchIsTornApart)
 {
   const Torn *torn = Tear();
   double highest = 0.0;
@@ -69,7 +69,7 @@ TEST(the_patch_is_torn_apart)
   assert_true(torn->states[torn->count - 1].P[4] < 0.25 * highest);
 }
 
-TEST(f_goes_back_behind_the_limit)
+TEST(FGoesBackBehindTheLimit)
 {
   const Torn *torn = Tear();
   int back = 0;
@@ -78,7 +78,7 @@ TEST(f_goes_back_behind_the_limit)
   assert_true(back >= 2);
 }
 
-TEST(where_f_goes_back_the_lamella_breaks)
+TEST(WhereFGoesBackTheLamellaBreaks)
 {
   const Torn *torn = Tear();
 
@@ -88,7 +88,7 @@ TEST(where_f_goes_back_the_lamella_breaks)
 }
 
 /* There is no jump: the trapezoidal rule misses what the curvature of the branch is. */
-TEST(work_is_what_is_stored_and_dissipated)
+TEST(WorkIsWhatIsStoredAndDissipated)
 {
   const Torn *torn = Tear();
   const LamResponse *first = &torn->states[0], *last = &torn->states[torn->count - 1];
@@ -98,7 +98,7 @@ TEST(work_is_what_is_stored_and_dissipated)
 }
 
 /* Until the peak the states are those that the prescribed F finds, too. */
-TEST(load_control_finds_the_same_states_before_the_limit)
+TEST(LoadControlFindsTheSameStatesBeforeTheLimit)
 {
   const Torn *torn = Tear();
   const LamMicrostructure micro = NotchedPatch();

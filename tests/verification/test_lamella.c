@@ -272,20 +272,14 @@ TEST(PackedHistoryGoesOnBitForBit)
   OWNED(LamRVEState, LamRVEStateDestroy) a = NewState(rve);
   OWNED(LamRVEState, LamRVEStateDestroy) b = NewState(rve);
   LamResponse ra, rb;
-  size_t size;
-  char *bytes;
 
   CHECK(LamRVESolve(rve, &first, a, &ra));
-  CHECK(LamRVEStateSize(a, &size));
-  CHECK(PetscMalloc1(size, &bytes));
-  CHECK(LamRVEStatePack(a, bytes));
-  CHECK(LamRVEStateUnpack(bytes, b));
+  CopyPacked(a, b);
   CHECK(LamRVESolve(rve, &second, a, &ra));
   CHECK(LamRVESolve(rve, &second, b, &rb));
   assert_true(ra.dissipated > 0.0);
   assert_memory_equal(ra.P, rb.P, sizeof(ra.P));
   assert_memory_equal(&ra.dissipated, &rb.dissipated, sizeof(ra.dissipated));
-  CHECK(PetscFree(bytes));
   CHECK(LamRVEDestroy(&rve));
 }
 
