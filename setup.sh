@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 
 packages=(
   build-essential cmake ninja-build pkg-config
-  libpetsc-real-dev libsundials-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin
+  libpetsc-real-dev libmumps-dev libmetis-dev libsundials-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
   libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core
   libmuparser-dev # expressions of the position

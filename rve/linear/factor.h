@@ -1,12 +1,12 @@
 /*
-  Factorisation of the symmetric indefinite matrices of the RVE by MUMPS LDL^T through PETSc, on one rank or, for large
-  systems, on several. Rank 0 holds the matrix and all vectors; the other ranks of the communicator wait in
+  Factorisation of the symmetric indefinite matrices of the RVE by MUMPS LDL^T, on one rank or, for large systems, on
+  several. Rank 0 holds the matrix and all vectors; the other ranks of the communicator wait in
   LamRVEServe and take part in factorisations and solves until LamRVEDismiss.
 */
 #ifndef LAM_RVE_FACTOR_H
 #define LAM_RVE_FACTOR_H
 
-#include <petscmat.h>
+#include <petscsys.h>
 
 typedef struct LamFactor_s *LamFactor;
 
