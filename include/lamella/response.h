@@ -116,6 +116,10 @@ typedef struct {
   PetscReal broken_by_face[3];
   PetscReal burst_fraction; /* share of the cells that have burst: a wall is torn through, and turgor is lost */
   PetscReal juice;          /* volume per V0 of their lumens, when they burst */
+  /* Of a patch with a notch: the broken faces that hang together with it, and how far they run beyond it along X1, in
+     apothems; a face is broken once more than half of its energy is spent. */
+  PetscInt crack_faces;
+  PetscReal crack_length;
   PetscBool jumped;             /* the branch of the state before ends: this is the next minimum */
   PetscReal energy_released;    /* Psi that the jump has lost; NaN: no jump */
   PetscBool indicators_trusted; /* of a response from a database: quantities that are not derivatives of Psi vary little

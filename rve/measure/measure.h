@@ -86,6 +86,11 @@ void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
 /* ---- bonds.c ---- */
 /* Sets energies and broken fractions of tissue with a lamella; after LamHomogenise. */
 void LamLayerMeasures(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* ---- crack.c ---- */
+/* Sets faces and length of the crack; of a patch without a notch they stay unknown. */
+PetscErrorCode LamCrackMeasure(LamRVE rve, const LamLoad *load, LamResponse *response);
+
+/* ---- bonds.c ---- */
 /* Sums over the points of the lamella. */
 typedef struct {
   PetscReal dissipated;             /* in this step */

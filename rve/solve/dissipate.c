@@ -35,8 +35,7 @@
 #define PART_TOLERANCE 1e-5
 #define PART_ITERATIONS 30
 #define ROUNDS 12 /* of the window, and then all unknowns once, ... */
-#define SOME 8    /* iterations, where the window would be too large, */
-#define FINE 1e-2 /* ... until this residual */
+#define SOME 8    /* iterations, where the window would be too large, until LAM_DISSIPATION_FINE */
 
 /* The cells at which most is dissipated, and those where the residual is largest. */
 static void FindSeeds(const LamDissipation *t, PetscReal residual[], PetscBool seed[])
@@ -172,7 +171,7 @@ static PetscErrorCode Step(LamDissipation *t, LamRVEState at, PetscReal share, P
   for (PetscInt k = 0; k < ROUNDS && !*found && !t->stuck; ++k) {
     PetscBool serves = PETSC_FALSE;
 
-    if (!(is_held && k == 0) && t->norm > FINE)
+    if (!(is_held && k == 0) && t->norm > LAM_DISSIPATION_FINE)
       PetscCall(Approach(t, is_held ? limit : tau, is_held, (PetscBool)(!is_held && k == 0), &serves));
     PetscCall(LamDissipationIterate(t, is_held ? limit : tau, LamNewtonTolerance(t->rve), is_held,
                                     serves || (is_held && k == 0) ? 1

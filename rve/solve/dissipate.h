@@ -10,6 +10,8 @@
 #include "contact_find.h"
 #include "part.h"
 
+#define LAM_DISSIPATION_FINE                                                                                           \
+  1e-2 /* residual near a state: no window helps, and a matrix that is not convex tells of a limit */
 #define LAM_DISSIPATION_ITERATIONS 60
 #define LAM_DISSIPATION_EXCESS 1.5 /* of the energy asked for, up to which a step of prescribed s stands */
 #define LAM_DISSIPATION_FIRST 0.1  /* share of tau that the first guess dissipates, ... */

@@ -135,6 +135,7 @@ PetscErrorCode LamDissipationIterate(LamDissipation *t, PetscReal tau, PetscReal
     if (it >= most) break;
     PetscCall(LamDissipationSolve(t, &convex, &ok));
     if (!ok || (!convex && rve->layer->secant)) break;
+    if (!convex && is_held && t->norm < LAM_DISSIPATION_FINE) break; /* behind a limit of F */
     if (!convex) {
       rve->layer->secant = PETSC_TRUE;
       --it; /* no step has been taken */

@@ -248,6 +248,7 @@ static PetscErrorCode FillFields(LamRVE rve, const LamLoad *load, LamResponse *r
   if (rve->contact) PetscCall(FillContact(rve, load, response));
   if (rve->wanted & (LAM_WANT_STRESS | LAM_WANT_DERIVATIVES)) PetscCall(LamHomogenise(rve, load, response));
   if (rve->layer) LamLayerMeasures(rve, load, response);
+  if (rve->layer) PetscCall(LamCrackMeasure(rve, load, response));
   if (rve->wanted & LAM_WANT_WALLS) PetscCall(LamWallMeasures(rve, load, response));
   if (!(rve->wanted & LAM_WANT_INDICATORS)) PetscFunctionReturn(0);
   if (rve->contact) {

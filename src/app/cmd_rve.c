@@ -145,6 +145,48 @@ static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse 
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode PrintCrackObject(const LamCrack *crack, PetscReal um, PetscReal energy, PetscReal toughness,
+                                       PetscReal MPa)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamPrintJSON(
+      json_pack("{s:{s:i, s:i, s:i, s:o, s:o, s:o, s:o}}", "crack", "begins", (int)crack->begins, "last",
+                (int)crack->last, "faces", (int)crack->faces, "length", LamJSONReal(crack->length[1] * um),
+                "resistance", LamJSONReal(crack->resistance * energy), "modulus", LamJSONReal(crack->modulus * MPa),
+                "toughness", LamJSONReal(crack->toughness * toughness))));
+  PetscFunctionReturn(0);
+}
+
+/* um, J/m^2, kPa m^(1/2) and MPa. */
+static PetscErrorCode PrintCrack(const LamRVERun *run, PetscBool json)
+{
+  const LamScales *scales = &run->scene->scales;
+  const PetscReal um = scales->length * 1e6, energy = scales->stress * scales->length, MPa = scales->stress * 1e-6;
+  const PetscReal toughness = scales->stress * 1e-3 * sqrt(scales->length);
+  const LamCrack *crack = &run->crack;
+
+  PetscFunctionBeginUser;
+  if (!run->scene->micro.notch_columns) PetscFunctionReturn(0);
+  if (json) {
+    PetscCall(PrintCrackObject(crack, um, energy, toughness, MPa));
+    PetscFunctionReturn(0);
+  }
+  if (!crack->begins) {
+    printf("crack: it has not grown from the notch\n");
+    PetscFunctionReturn(0);
+  }
+  printf("crack: grows from the notch from state %d on (F22 %.4f, P22 %.4g MPa); %.4g um along %d faces by state %d "
+         "(F22 %.4f)\n",
+         (int)crack->begins, (double)crack->F22[0], (double)(crack->P22[0] * MPa), (double)(crack->length[1] * um),
+         (int)crack->faces, (int)crack->last, (double)crack->F22[1]);
+  if (isfinite(crack->resistance))
+    printf("  resistance: %.4g J/m^2 dissipated per area of growth\n", (double)(crack->resistance * energy));
+  if (isfinite(crack->toughness))
+    printf("  toughness: K = %.4g kPa m^(1/2), of linear elastic tissue with a modulus of %.4g MPa in plane strain\n",
+           (double)(crack->toughness * toughness), (double)(crack->modulus * MPa));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportEnd(const Command *command)
 {
   const LamRVERun *run = &command->run;
@@ -154,6 +196,7 @@ static PetscErrorCode ReportEnd(const Command *command)
   if (run->find_onset) PetscCall(LamOnsetPrint(&run->onset, &run->scene->scales, json));
   if (run->find_failure) PetscCall(LamFailurePrint(&run->failure, &run->scene->scales, json));
   if (run->readings) PetscCall(LamTestPrint(&run->test, &command->console.test, json));
+  PetscCall(PrintCrack(run, json));
   if (json) PetscFunctionReturn(0);
   printf("%" PetscInt_FMT " of %" PetscInt_FMT " states solved, %" PetscInt_FMT " failed, %.3g s\n",
          run->solved - run->failed, run->scene->load_count, run->failed, LamClock() - run->start);

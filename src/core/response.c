@@ -94,6 +94,9 @@ const LamMember LamResponseMembers[] = {
     {THREE(broken_by_face, FAMILY, 0, NULL, "the same per face family")},
     {REAL(burst_fraction, 1, 0, "share of the cells that have burst")},
     {REAL(juice, 1, 0, "volume of their lumens over V0, when they burst")},
+    {INT(crack_faces,
+         "faces of the crack that runs from the notch of a patch, more than half of whose energy is spent")},
+    {IN("apothem", crack_length, "how far it runs beyond the notch along X1, apothem")},
     {"indicators_trusted", LAM_MEMBER_BOOL, 1, AT(indicators_trusted), 0, NULL,
      "whether indicators of an interpolated response change little between the states around", NULL, NULL},
     {INT(branch, "number of branch switches on the way")},
@@ -123,7 +126,7 @@ PetscErrorCode LamResponseInit(const LamLoad *load, LamResponse *response)
   response->load = copy;
   response->status = LAM_NOT_CONVERGED;
   response->indicators_trusted = PETSC_TRUE;
-  response->floating_cells = response->zero_modes = LAM_UNKNOWN_COUNT;
+  response->floating_cells = response->zero_modes = response->crack_faces = LAM_UNKNOWN_COUNT;
   response->cell_clusters = response->percolating_directions = LAM_UNKNOWN_COUNT;
   PetscFunctionReturn(0);
 }

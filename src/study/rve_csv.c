@@ -35,6 +35,10 @@
   X("dissipated (kJ/m^3)", (r->dissipated) * MPa * 1e3)                                                                \
   X("dissipated_walls (kJ/m^3)", (r->dissipated_walls) * MPa * 1e3)                                                    \
   X("released (kJ/m^3)", (r->released) * MPa * 1e3)
+/* Those of a patch with a notch. */
+#define CRACK_COLUMNS(X)                                                                                               \
+  X("crack_faces", (PetscReal)r->crack_faces)                                                                          \
+  X("crack_length (um)", (r->crack_length) * run->scene->scales.length * 1e6)
 #define CURVE_COLUMNS(X)                                                                                               \
   X("strain", p->strain)                                                                                               \
   X("stress (MPa)", (p->stress) * MPa)                                                                                 \
@@ -62,6 +66,9 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
   if (HasLamella(run)) {
     LAMELLA_COLUMNS(PRINT_NAME)
   }
+  if (run->scene->micro.notch_columns) {
+    CRACK_COLUMNS(PRINT_NAME)
+  }
   if (run->readings) {
     CURVE_COLUMNS(PRINT_NAME)
   }
@@ -83,6 +90,9 @@ void LamRVECSVAdd(LamRVERun *run, const LamResponse *r)
   COLUMNS(PRINT_VALUE)
   if (HasLamella(run)) {
     LAMELLA_COLUMNS(PRINT_VALUE)
+  }
+  if (run->scene->micro.notch_columns) {
+    CRACK_COLUMNS(PRINT_VALUE)
   }
   if (run->readings) {
     CURVE_COLUMNS(PRINT_VALUE)

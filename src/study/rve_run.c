@@ -71,6 +71,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
   PetscCall(LamRVESetMonitor(run->meshes.rve[0], run->monitor));
   if (!run->no_estimate && !run->second_mesh) PetscCall(LamRVEEstimateCreate(run->meshes.rve[0], &run->estimate));
   LamTestCreate(run->scene, &run->test);
+  run->crack = LAM_NO_CRACK;
   if (!run->scene->inflate) PetscCall(LamMeshesSeal(&run->meshes, run->scene, &run->scene->loads[0]));
   if (run->find_onset) PetscCall(LamOnsetCreate(&run->meshes, &run->onset));
   if (run->find_failure) {
@@ -219,6 +220,7 @@ static PetscErrorCode SolveStates(LamRVERun *run)
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     CountDoubts(run, &responses[0]);
     WarnOfSuction(run, &responses[0]);
+    LamCrackAdd(&run->crack, &run->scene->micro, run->solved, &responses[0]);
     if (run->readings)
       PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
     if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
@@ -265,6 +267,7 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
   PetscCall(ierr);
   if (run->find_onset) PetscCall(LamOnsetFind(&run->onset, &run->meshes, run->scene->load_count));
   if (run->find_failure) PetscCall(LamFailureConclude(&run->failure));
+  PetscCall(LamCrackConclude(&run->crack, &run->scene->micro, &run->scene->loads[0]));
   PetscFunctionReturn(0);
 }
 

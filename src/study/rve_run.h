@@ -11,6 +11,7 @@
 #define LAM_RVE_RUN_H
 
 #include "beside.h"
+#include "crack.h"
 #include "failure.h"
 #include "mechanical_test.h"
 #include "study.h"
@@ -35,6 +36,7 @@ typedef struct LamRVERun_s {
   LamRVEEstimate estimate; /* NULL: no estimate */
   LamOnset onset;
   LamFailure failure;
+  LamCrack crack;         /* of a patch with a notch */
   LamTest test;           /* curve of the states with a solution, with `readings` */
   LamRecordWriter writer; /* NULL without a file */
   LamBeside csv;          /* with a file: its table for spreadsheets */

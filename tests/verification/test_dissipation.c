@@ -97,6 +97,18 @@ TEST(WorkIsWhatIsStoredAndDissipated)
   assert_near(last->work - first->work - (last->stored - first->stored), spent, 0.03 * spent);
 }
 
+/* Two faces of a row's zigzag for each column: an apothem each along X1. */
+TEST(TheCrackGrowsByFaces)
+{
+  const Torn *torn = Tear();
+  const LamResponse *first = &torn->states[0], *last = &torn->states[torn->count - 1];
+
+  assert_int_equal(first->crack_faces, 0);
+  assert_near(first->crack_length, 0.0, 0.0);
+  assert_true(last->crack_faces >= 3);
+  assert_near(last->crack_length, last->crack_faces, 1e-12);
+}
+
 /* Until the peak the states are those that the prescribed F finds, too. */
 TEST(LoadControlFindsTheSameStatesBeforeTheLimit)
 {
