@@ -14,8 +14,9 @@ packages=(
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
   libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core
   libmuparser-dev # expressions of the position
+  python3-numpy python3-cffi # of the Python package
 )
-test_packages=(libcmocka-dev python3-numpy python3-h5py python3-meshio)
+test_packages=(libcmocka-dev python3-h5py python3-meshio)
 fuzz_packages=(clang libclang-rt-dev)
 
 # One thread per rank, on one machine as on a cluster; Open MPI refuses root unless it is told.
@@ -73,7 +74,7 @@ case "${1-run}" in
   deps) install_missing "${packages[@]}" "${test_packages[@]}" ;;
   run)
     install_missing "${packages[@]}" "${test_packages[@]}"
-    build release build --target lamella lamella_program
+    build release build --target lamella lamella_program lamella_shared
     main_job
     ;;
   test)

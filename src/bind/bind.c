@@ -1,0 +1,270 @@
+/* Handles carry the units of their scene: loads and responses are converted here. */
+#include "study.h"
+#include <lamella/bind.h>
+#include <lamella/error.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define LOAD 11 /* numbers of a load: F, turgor, cohesion */
+
+static PetscErrorCode Start(void)
+{
+  PetscFunctionBeginUser;
+  if (PetscInitializeCalled) PetscFunctionReturn(0);
+  if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK") && !getenv("PMI_RANK")) { /* no other ranks to look for */
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_pml", "ob1", 0);
+  }
+  setenv("HWLOC_HIDE_ERRORS", "2", 0);
+  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* signals are the program's */
+  PetscCall(PetscInitializeNoArguments());
+  PetscFunctionReturn(0);
+}
+
+int LamBindStart(void)
+{
+  const PetscErrorCode kept = LamErrorsKeep();
+
+  return kept ? (int)kept : (int)Start();
+}
+
+char LamBindErrorKind(int code)
+{
+  switch (code) {
+  case PETSC_ERR_USER_INPUT:
+    return 'i';
+  case PETSC_ERR_FILE_OPEN:
+  case PETSC_ERR_FILE_READ:
+  case PETSC_ERR_FILE_WRITE:
+  case PETSC_ERR_FILE_UNEXPECTED:
+    return 'f';
+  case PETSC_ERR_MEM:
+    return 'm';
+  default:
+    return ' ';
+  }
+}
+
+/* ---- responses ---- */
+
+size_t LamBindResponseSize(void)
+{
+  return sizeof(LamResponse);
+}
+
+static const char *UnitOf(const LamMember *member)
+{
+  if (member->stress_power == 1) return "Pa";
+  if (member->stress_power == -1) return "1/Pa";
+  return member->unit ? member->unit : "1";
+}
+
+const char *LamBindMember(int i, char *type, int *count, size_t *offset, const char **unit, const char **help)
+{
+  static const char types[] = {[LAM_MEMBER_REAL] = 'f',
+                               [LAM_MEMBER_INT] = 'i',
+                               [LAM_MEMBER_BOOL] = 'b',
+                               [LAM_MEMBER_ENUM] = 'e',
+                               [LAM_MEMBER_TEXT] = 's'};
+  const LamMember *member = &LamResponseMembers[i];
+
+  if (!member->name) return NULL;
+  *type = types[member->type];
+  *count = (int)member->count;
+  *offset = member->offset;
+  *unit = UnitOf(member);
+  *help = member->help;
+  return member->name;
+}
+
+const char *LamBindMemberName(int i, int value)
+{
+  return LamResponseMembers[i].names ? LamResponseMembers[i].names[value] : NULL;
+}
+
+static LamLoad LoadOf(const double row[LOAD], const LamScales *scales)
+{
+  LamLoad load = {.turgor = row[9] / scales->stress, .cohesion = row[10] / scales->stress};
+
+  for (int i = 0; i < 9; i++) load.F[i] = row[i];
+  return load;
+}
+
+/* ---- scenes ---- */
+
+struct LamBindScene_s {
+  LamScene *scene;
+};
+
+static PetscErrorCode ReadScene(const char *path, const char *text, LamBindScene *out)
+{
+  LamBindScene bound;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&bound));
+  PetscCall(text ? LamSceneReadText(path, text, &bound->scene) : LamSceneRead(path, &bound->scene));
+  *out = bound;
+  PetscFunctionReturn(0);
+}
+
+int LamBindSceneRead(const char *path, const char *text, LamBindScene *scene)
+{
+  return (int)ReadScene(path, text, scene);
+}
+
+void LamBindSceneScales(LamBindScene scene, double scales[2])
+{
+  scales[0] = scene->scene->scales.length;
+  scales[1] = scene->scene->scales.stress;
+}
+
+int LamBindSceneLoads(LamBindScene scene, double loads[])
+{
+  const LamScales *scales = &scene->scene->scales;
+
+  for (PetscInt k = 0; k < scene->scene->load_count && loads; k++) {
+    const LamLoad *load = &scene->scene->loads[k];
+
+    for (int i = 0; i < 9; i++) loads[LOAD * k + i] = load->F[i];
+    loads[LOAD * k + 9] = load->turgor * scales->stress;
+    loads[LOAD * k + 10] = load->cohesion * scales->stress;
+  }
+  return (int)scene->scene->load_count;
+}
+
+void LamBindSceneDestroy(LamBindScene scene)
+{
+  (void)LamSceneDestroy(&scene->scene);
+  (void)PetscFree(scene);
+}
+
+/* ---- RVE ---- */
+
+struct LamBindRVE_s {
+  LamRVE rve;
+  LamRVEState state;
+  LamScales scales;
+};
+
+static PetscErrorCode CreateRVE(const LamScene *scene, LamBindRVE *out)
+{
+  LamBindRVE bound;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&bound));
+  bound->scales = scene->scales;
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &bound->rve));
+  PetscCall(LamRVEStateCreate(bound->rve, &bound->state));
+  *out = bound;
+  PetscFunctionReturn(0);
+}
+
+int LamBindRVECreate(LamBindScene scene, LamBindRVE *rve)
+{
+  return (int)CreateRVE(scene->scene, rve);
+}
+
+static PetscErrorCode SolveLoads(LamBindRVE bound, int n, const double loads[], int derivatives,
+                                 LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamRVESetWanted(bound->rve, derivatives ? LAM_WANT_ALL : LAM_WANT_ALL & ~LAM_WANT_DERIVATIVES));
+  for (int k = 0; k < n; k++) {
+    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->scales);
+
+    PetscCall(LamRVESolve(bound->rve, &load, bound->state, &responses[k]));
+    LamResponseScale(bound->scales.stress, &responses[k]);
+  }
+  PetscFunctionReturn(0);
+}
+
+int LamBindRVESolve(LamBindRVE rve, int n, const double loads[], int derivatives, void *responses)
+{
+  return (int)SolveLoads(rve, n, loads, derivatives, (LamResponse *)responses);
+}
+
+int LamBindRVEStateSize(LamBindRVE rve, size_t *bytes)
+{
+  return (int)LamRVEStateSize(rve->state, bytes);
+}
+
+int LamBindRVEGetState(LamBindRVE rve, void *bytes)
+{
+  return (int)LamRVEStatePack(rve->state, bytes);
+}
+
+int LamBindRVESetState(LamBindRVE rve, const void *bytes)
+{
+  return (int)LamRVEStateUnpack(bytes, rve->state);
+}
+
+int LamBindRVEReset(LamBindRVE rve)
+{
+  return (int)LamRVEStateReset(rve->rve, rve->state);
+}
+
+void LamBindRVEDestroy(LamBindRVE rve)
+{
+  (void)LamRVEStateDestroy(&rve->state);
+  (void)LamRVEDestroy(&rve->rve);
+  (void)PetscFree(rve);
+}
+
+/* ---- databases ---- */
+
+struct LamBindDatabase_s {
+  LamDatabase database;
+  LamScales scales;
+};
+
+static PetscErrorCode OpenDatabase(const char *path, LamBindDatabase *out)
+{
+  LamMicrostructure micro;
+  LamBindDatabase bound;
+  const char *hash;
+  LamTable table;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&bound));
+  PetscCall(LamDatabaseOpen(path, &bound->database));
+  PetscCall(LamDatabaseGetMicrostructure(bound->database, &micro, &bound->scales, &hash));
+  PetscCall(LamDatabaseGetTable(bound->database, &table)); /* now: queries are then free of each other */
+  if (table) PetscCall(LamTableDestroy(&table));           /* the database keeps it */
+  *out = bound;
+  PetscFunctionReturn(0);
+}
+
+int LamBindDatabaseOpen(const char *path, LamBindDatabase *database)
+{
+  return (int)OpenDatabase(path, database);
+}
+
+void LamBindDatabaseScales(LamBindDatabase database, double scales[2])
+{
+  scales[0] = database->scales.length;
+  scales[1] = database->scales.stress;
+}
+
+static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], double accuracy,
+                            LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < n; k++) {
+    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->scales);
+
+    PetscCall(LamDatabaseQuery(bound->database, &load, accuracy, &responses[k]));
+    LamResponseScale(bound->scales.stress, &responses[k]);
+  }
+  PetscFunctionReturn(0);
+}
+
+int LamBindDatabaseQuery(LamBindDatabase database, int n, const double loads[], double accuracy, void *responses)
+{
+  return (int)Query(database, n, loads, accuracy, (LamResponse *)responses);
+}
+
+void LamBindDatabaseClose(LamBindDatabase database)
+{
+  (void)LamDatabaseClose(&database->database);
+  (void)PetscFree(database);
+}

@@ -1,0 +1,104 @@
+# The Python package: its numbers are those of the program, states without an answer are flags, mistakes exceptions.
+. "$(dirname "$0")/common.sh"
+
+python=/usr/bin/python3
+export PYTHONPATH=$source/python LAMELLA_LIBRARY
+LAMELLA_LIBRARY=$(dirname "$lamella")
+"$python" -c 'import cffi, numpy' 2>/dev/null || { echo "skipped: python3-cffi and python3-numpy are not installed"; exit 77; }
+[ -f "$LAMELLA_LIBRARY/liblamella.so" ] || { echo "skipped: no shared library in this build"; exit 77; }
+! nm -D "$LAMELLA_LIBRARY/liblamella.so" | grep -q __asan || { echo "skipped: the sanitizers are not loaded by Python"; exit 77; }
+
+cp "$source/tests/scenes/shear-contact.yaml" contact.yaml
+expect 0 "$lamella" rve contact.yaml --json --tangent --no-estimate
+cp out.txt rve.txt
+cat >table.yaml <"$source/tests/fuzz/files/contact-table.yaml"
+expect 0 "$lamella" build table.yaml -d table.h5 --quiet
+expect 0 "$lamella" query table.h5 -F 1.01,0.02,0,0.99 --turgor "0.02 MPa" --cohesion "0.001 MPa" --accuracy 0.05 --json --tangent
+
+"$python" - <<'PYTHON' || fail "the package"
+import json, threading
+import numpy as np
+import lamella
+
+def close(one, other):
+    assert np.allclose(one, other, rtol=1e-12, atol=1e-9, equal_nan=True), (one, other)
+def pascals(told):  # null is not known
+    return 1e6 * np.array(told, dtype=float).ravel()
+
+# states of a scene, one after the other
+scene = lamella.Scene("contact.yaml")
+rve = lamella.RVE(scene)
+r = rve.solve(scene.F, scene.turgor, scene.cohesion)
+told = [json.loads(line) for line in open("rve.txt")]
+assert len(r) == len(told) > 2 and list(r.status) == [t["status"] for t in told] and r.converged.all()
+for k, t in enumerate(told):
+    close(r.P[k].ravel(), pascals(t["P"]))
+    close(r.tangent[k].ravel(), pascals(t["tangent"]))
+    close(r.debonded_fraction[k], t["debonded_fraction"])
+assert r.P.shape == (len(r), 3, 3) and r.tangent.shape == (len(r), 3, 3, 3, 3) and r.stable.dtype == bool
+
+# a state is kept as bytes
+state = rve.state
+last = rve.solve(scene.F[-1], scene.turgor[-1], scene.cohesion[-1])
+rve.reset()
+rve.state = state
+close(rve.solve(scene.F[-1][:2, :2], scene.turgor[-1], scene.cohesion[-1]).P, last.P)
+
+# a state without an answer
+bad = rve.solve(np.diag([-1.0, 1, 1]))
+assert not bad.converged and bad.status != "converged" and str(bad.reason)
+
+# queries, of many states and threads
+db = lamella.Database("table.h5")
+t = json.loads(open("out.txt").read())
+F = np.array([[1.01, 0.02], [0, 0.99]])
+one = db.query(F, 2e4, 1e3, accuracy=0.05)
+close(one.P.ravel(), pascals(t["P"]))
+close(one.tangent.ravel(), pascals(t["tangent"]))
+assert one.status == t["status"] and one.error_estimate == t["error_estimate"]
+many = db.query(np.tile(F, (50, 4, 1, 1)), 2e4, 1e3, accuracy=0.05)
+assert many.P.shape == (50, 4, 3, 3) and (many.P == one.P).all()
+results = [None] * 4
+def ask(k):
+    results[k] = db.query(np.tile(F, (200, 1, 1)), 2e4, 1e3, accuracy=0.05).P
+threads = [threading.Thread(target=ask, args=(k,)) for k in range(4)]
+[thread.start() for thread in threads], [thread.join() for thread in threads]
+assert all((P == one.P).all() for P in results)
+
+# mistakes
+def raises(kind, words, call):
+    try:
+        call()
+    except kind as error:
+        assert words in str(error), error
+        return
+    raise AssertionError(f"no {kind}")
+raises(lamella.InputError, "text:2:7: rve.cel: unknown key; did you mean cell?",
+       lambda: lamella.Scene("text", text="version: 1\nrve: {cel: 3}\n"))
+raises(lamella.InputError, "shape (3, 2)", lambda: rve.solve(np.ones((3, 2))))
+raises(lamella.InputError, "a state of 3 bytes", lambda: setattr(rve, "state", b"abc"))
+raises(lamella.InputError, "contact.yaml", lambda: lamella.Database("contact.yaml"))
+raises(AttributeError, "a response has no stress", lambda: one.stress)
+assert "Piola" in lamella.Responses.help("P") and "Pa" in lamella.Responses.help("P")
+PYTHON
+
+# what the reference shows
+ln -s "$source/tests" tests
+cp "$source/docs/reference/python.md" .
+"$python" -m doctest python.md || fail "docs/reference/python.md"
+
+# beside mpi4py and petsc4py, where they are installed
+if "$python" -c 'import mpi4py, petsc4py' 2>/dev/null; then
+  "$python" - <<'PYTHON' || fail "beside mpi4py and petsc4py"
+import sys
+from mpi4py import MPI
+import petsc4py
+petsc4py.init(sys.argv)
+from petsc4py import PETSc
+import lamella
+import numpy as np
+vector = PETSc.Vec().createSeq(3)
+vector.set(2)
+assert lamella.RVE("tests/scenes/shear-bonded.yaml").solve(np.eye(3), 2e4).converged and vector.sum() == 6
+PYTHON
+fi

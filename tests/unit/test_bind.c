@@ -1,0 +1,147 @@
+/* What other languages call: units, states as bytes, errors. */
+#include "support/test.h"
+#include <lamella/bind.h>
+#include <lamella/error.h>
+#include <lamella/lamella.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char Text[] = "version: 1\n"
+                           "rve:\n"
+                           "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
+                           "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n"
+                           "  turgor: {mode: prescribed, pressure: 0.02 MPa}\n"
+                           "  mesh: {along: 2, through: 1}\n"
+                           "load:\n"
+                           "  - {F: [[1, 0.1], [0, 1]]}\n"
+                           "  - {F: [[1, 0.2], [0, 1]], turgor: 0.01 MPa}\n";
+
+enum { LOAD = 11, STATES = 2 };
+
+typedef struct {
+  LamBindScene scene;
+  LamBindRVE rve;
+  double loads[STATES * LOAD];
+  LamResponse responses[STATES];
+} Bound;
+
+static void Enter(Bound *b)
+{
+  assert_int_equal(LamBindSceneRead("test", Text, &b->scene), 0);
+  assert_int_equal(LamBindSceneLoads(b->scene, b->loads), STATES);
+  assert_int_equal(LamBindRVECreate(b->scene, &b->rve), 0);
+}
+
+static void Leave(Bound *b)
+{
+  LamBindRVEDestroy(b->rve);
+  LamBindSceneDestroy(b->scene);
+}
+
+TEST_ON(loads_are_in_pascals, Bound, b, Enter(b), Leave(b))
+{
+  assert_near(b->loads[9], 2e4, 1e-9);
+  assert_near(b->loads[LOAD + 9], 1e4, 1e-9);
+  assert_near(b->loads[LOAD + 1], 0.2, 0);
+}
+
+TEST_ON(scales_are_the_apothem_and_the_moduli, Bound, b, Enter(b), Leave(b))
+{
+  double scales[2];
+
+  LamBindSceneScales(b->scene, scales);
+  assert_near(scales[0], 75e-6, 1e-18);
+  assert_near(scales[1], 1.1e5, 1e-9);
+}
+
+/* The same solve by the library's own functions, which count stresses in C1 + C2. */
+TEST_ON(responses_are_in_pascals, Bound, b, Enter(b), Leave(b))
+{
+  LamLoad load = {.F = {1, 0.1, 0, 0, 1, 0, 0, 0, 1}, .turgor = 2e4 / 1.1e5};
+  LamResponse direct;
+  LamRVEState state;
+  LamScene *scene;
+  LamRVE rve;
+
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_equal(LamSceneReadText("test", Text, &scene), 0);
+  assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
+  assert_int_equal(LamRVESetMicrostructure(rve, &scene->micro), 0);
+  assert_int_equal(LamRVESetUp(rve), 0);
+  assert_int_equal(LamRVEStateCreate(rve, &state), 0);
+  assert_int_equal(LamRVESolve(rve, &load, state, &direct), 0);
+  assert_int_equal(direct.status, LAM_CONVERGED);
+  for (int i = 0; i < 9; i++) assert_near(b->responses[0].P[i], 1.1e5 * direct.P[i], 1e-9 * 1.1e5);
+  assert_near(b->responses[0].tangent[0], 1.1e5 * direct.tangent[0], 1e-9 * 1.1e5);
+  assert_near(b->responses[0].lumen_fraction, direct.lumen_fraction, 1e-12);
+  assert_int_equal(LamRVEStateDestroy(&state), 0);
+  assert_int_equal(LamRVEDestroy(&rve), 0);
+  assert_int_equal(LamSceneDestroy(&scene), 0);
+}
+
+TEST_ON(a_solve_goes_on_from_a_state_that_was_kept, Bound, b, Enter(b), Leave(b))
+{
+  LamResponse again;
+  size_t size;
+  void *bytes;
+
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_equal(LamBindRVEStateSize(b->rve, &size), 0);
+  bytes = malloc(size);
+  assert_int_equal(LamBindRVEGetState(b->rve, bytes), 0);
+  assert_int_equal(LamBindRVEReset(b->rve), 0);
+  assert_int_equal(LamBindRVESetState(b->rve, bytes), 0);
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, &again), 0);
+  assert_near(again.P[1], b->responses[0].P[1], 1e-9 * fabs(b->responses[0].P[1]));
+  assert_true(again.newton_iterations < b->responses[0].newton_iterations);
+  free(bytes);
+}
+
+TEST_ON(a_state_without_an_answer_is_no_error, Bound, b, Enter(b), Leave(b))
+{
+  b->loads[0] = -1;
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_not_equal(b->responses[0].status, LAM_CONVERGED);
+  assert_true(b->responses[0].reason[0] != '\0');
+}
+
+TEST(a_mistake_is_an_error_of_the_input)
+{
+  LamBindScene scene;
+  const int code = LamBindSceneRead("wrong.yaml", "version: 1\nrve: {cel: 3}\n", &scene);
+
+  assert_int_equal(LamBindErrorKind(code), 'i');
+  assert_non_null(strstr(LamErrorMessage(), "wrong.yaml:2:7: rve.cel: unknown key; did you mean cell?"));
+}
+
+TEST(members_are_those_of_a_response)
+{
+  int count, found = 0;
+  const char *name, *unit, *help;
+  size_t offset;
+  char type;
+
+  for (int i = 0; (name = LamBindMember(i, &type, &count, &offset, &unit, &help)); i++) {
+    assert_true(offset < LamBindResponseSize());
+    if (!strcmp(name, "tangent")) {
+      assert_int_equal(offset, offsetof(LamResponse, tangent));
+      assert_int_equal(count, 81);
+      assert_string_equal(unit, "Pa");
+      ++found;
+    }
+    if (!strcmp(name, "status")) {
+      assert_int_equal(type, 'e');
+      assert_string_equal(LamBindMemberName(i, LAM_CONVERGED), "converged");
+      ++found;
+    }
+  }
+  assert_int_equal(found, 2);
+}
+
+static int Start(void **state)
+{
+  (void)state;
+  return LamBindStart();
+}
+
+TEST_GROUP(.petsc = 1, .setup = Start);
