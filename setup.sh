@@ -14,7 +14,7 @@ packages=(
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
   libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core
   libmuparser-dev # expressions of the position
-  python3-numpy python3-cffi # of the Python package
+  python3-numpy python3-cffi python3-yaml # of the Python package
 )
 test_packages=(libcmocka-dev python3-h5py python3-meshio)
 fuzz_packages=(clang libclang-rt-dev)

@@ -9,13 +9,14 @@ All values are in SI units: Pa, m, J/m^3. F, P and the tangent A = dP/dF are ind
 of states have the shape of the states in front: F [n, 3, 3] gives P [n, 3, 3]. Errors are exceptions; a state that has no
 answer is none: `converged` is False, and `reason` says why.
 """
+import json
 import os
 
 import numpy as np
 
 from ._library import DTYPE, MEMBERS, Error, InputError, check, ffi, library, name_of
 
-__all__ = ["Scene", "RVE", "Database", "Responses", "Error", "InputError"]
+__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "Error", "InputError"]
 
 
 def _loads(F, turgor, cohesion):
@@ -38,6 +39,8 @@ class Responses:
     """Responses of an array of states. Each member is an attribute, an array of the states' shape with the member's own
     axes behind: `P` [..., 3, 3] Pa, `tangent` [..., 3, 3, 3, 3] Pa, `energy` J/m^3, `stable`, `lumen_fraction`, ...
     `help(name)` tells what a member is and its unit. Reals that are not known are NaN."""
+
+    dtype = DTYPE  #: of the array
 
     def __init__(self, array):
         self.array = array  #: structured NumPy array
@@ -85,10 +88,23 @@ def _respond(call, F, turgor, cohesion):
     return Responses(array)
 
 
+def scene_dict(scene):
+    """A scene as nested dictionaries: of a path, of a text (with a line break in it), or a dictionary as it is."""
+    if isinstance(scene, dict):
+        return scene
+    import yaml  # only where scenes are taken apart
+    if isinstance(scene, str) and "\n" in scene:
+        return yaml.safe_load(scene)
+    with open(scene, encoding="utf-8") as file:
+        return yaml.safe_load(file)
+
+
 class Scene:
-    """A scene from a file, or with `text` from a text. Mistakes raise InputError."""
+    """A scene from a file, from a dictionary, or with `text` from a text. Mistakes raise InputError."""
 
     def __init__(self, path="scene", text=None):
+        if isinstance(path, dict):
+            path, text = "scene", json.dumps(path)
         handle = ffi.new("LamBindScene *")
         check(library.LamBindSceneRead(os.fspath(path).encode(), ffi.NULL if text is None else text.encode(), handle))
         self._handle = ffi.gc(handle[0], library.LamBindSceneDestroy)
@@ -158,3 +174,6 @@ class Database:
         with which a state is answered. Returns Responses."""
         return _respond(lambda n, loads, out: library.LamBindDatabaseQuery(self._handle, n, loads, accuracy, out), F,
                         turgor, cohesion)
+
+
+from .sweeps import Sweep, sweep  # noqa: E402  (needs the names above)

@@ -4,7 +4,7 @@
 python=/usr/bin/python3
 export PYTHONPATH=$source/python LAMELLA_LIBRARY
 LAMELLA_LIBRARY=$(dirname "$lamella")
-"$python" -c 'import cffi, numpy' 2>/dev/null || { echo "skipped: python3-cffi and python3-numpy are not installed"; exit 77; }
+"$python" -c 'import cffi, numpy, yaml' 2>/dev/null || { echo "skipped: python3-cffi, python3-numpy and python3-yaml are not installed"; exit 77; }
 [ -f "$LAMELLA_LIBRARY/liblamella.so" ] || { echo "skipped: no shared library in this build"; exit 77; }
 ! nm -D "$LAMELLA_LIBRARY/liblamella.so" | grep -q __asan || { echo "skipped: the sanitizers are not loaded by Python"; exit 77; }
 
@@ -65,6 +65,18 @@ threads = [threading.Thread(target=ask, args=(k,)) for k in range(4)]
 [thread.start() for thread in threads], [thread.join() for thread in threads]
 assert all((P == one.P).all() for P in results)
 
+# a sweep: the states of each scene, as it solves them alone; not in one process, so by no more than rounding
+grid = {"rve.turgor.pressure": ["0 MPa", "0.02 MPa", "0.05 MPa"], "rve.wall.C4": ["1 MPa", "2 MPa"]}
+swept = lamella.sweep("contact.yaml", grid, processes=2)
+assert swept.P.shape == (3, 2, len(scene.F), 3, 3) and (swept.status == "converged").all()
+varied = lamella.scene_dict("contact.yaml")
+varied["rve"]["turgor"]["pressure"], varied["rve"]["wall"]["C4"] = "0.05 MPa", "2 MPa"
+alone = lamella.Scene(varied)
+assert np.allclose(swept.P[2, 1], lamella.RVE(alone).solve(alone.F, alone.turgor, alone.cohesion).P, rtol=1e-9, atol=1e-6)
+rows = swept.table("status", "energy")
+assert len(rows) == 6 * len(scene.F) and rows[-1]["rve.wall.C4"] == "2 MPa" and rows[-1]["state"] == len(scene.F) - 1
+assert rows[-1]["energy"] == swept.energy[2, 1, -1]
+
 # mistakes
 def raises(kind, words, call):
     try:
@@ -78,6 +90,8 @@ raises(lamella.InputError, "text:2:7: rve.cel: unknown key; did you mean cell?",
 raises(lamella.InputError, "shape (3, 2)", lambda: rve.solve(np.ones((3, 2))))
 raises(lamella.InputError, "a state of 3 bytes", lambda: setattr(rve, "state", b"abc"))
 raises(lamella.InputError, "contact.yaml", lambda: lamella.Database("contact.yaml"))
+raises(lamella.InputError, "no block turgr", lambda: lamella.sweep("contact.yaml", {"rve.turgr.pressure": [1]}))
+raises(lamella.InputError, "did you mean pressure?", lambda: lamella.sweep("contact.yaml", {"rve.turgor.presure": ["1 Pa"]}))
 raises(AttributeError, "a response has no stress", lambda: one.stress)
 assert "Piola" in lamella.Responses.help("P") and "Pa" in lamella.Responses.help("P")
 PYTHON
