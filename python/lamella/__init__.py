@@ -16,7 +16,7 @@ import numpy as np
 
 from ._library import DTYPE, MEMBERS, Error, InputError, check, ffi, library, name_of
 
-__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "Error", "InputError"]
+__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "run", "Run", "Error", "InputError"]
 
 
 def _loads(F, turgor, cohesion):
@@ -176,4 +176,5 @@ class Database:
                         turgor, cohesion)
 
 
-from .sweeps import Sweep, sweep  # noqa: E402  (needs the names above)
+from .program import Run, run  # noqa: E402  (need the names above)
+from .sweeps import Sweep, sweep  # noqa: E402

@@ -30,7 +30,9 @@ def _declarations():
 
 ffi.cdef(_declarations())
 _told = os.environ.get("LAMELLA_LIBRARY")
-library = ffi.dlopen(str(_find("liblamella.so", [Path(_told)] if _told else [_here, _source / "build"])))
+_path = _find("liblamella.so", [Path(_told)] if _told else [_here, _source / "build"])
+library_folder = _path.parent
+library = ffi.dlopen(str(_path))
 
 class Error(RuntimeError):
     """A fault, or what the library cannot do."""

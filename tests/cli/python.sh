@@ -77,6 +77,13 @@ rows = swept.table("status", "energy")
 assert len(rows) == 6 * len(scene.F) and rows[-1]["rve.wall.C4"] == "2 MPa" and rows[-1]["state"] == len(scene.F) - 1
 assert rows[-1]["energy"] == swept.energy[2, 1, -1]
 
+# the program's commands
+told = lamella.run("rve", "contact.yaml", "-o", "contact.h5", "--no-estimate")
+assert told.complete and len(told) == len(scene.F) and not told.warnings
+close(told[-1]["P"], 1e-6 * r.P[-1].ravel())
+assert lamella.run("info", "contact.h5")[0]["kind"] == "rve"
+assert not lamella.run("query", "table.h5", "-F", "1.01 0.02 0 0.99", "--accuracy", 1e-6).complete
+
 # mistakes
 def raises(kind, words, call):
     try:
@@ -92,6 +99,8 @@ raises(lamella.InputError, "a state of 3 bytes", lambda: setattr(rve, "state", b
 raises(lamella.InputError, "contact.yaml", lambda: lamella.Database("contact.yaml"))
 raises(lamella.InputError, "no block turgr", lambda: lamella.sweep("contact.yaml", {"rve.turgr.pressure": [1]}))
 raises(lamella.InputError, "did you mean pressure?", lambda: lamella.sweep("contact.yaml", {"rve.turgor.presure": ["1 Pa"]}))
+raises(lamella.InputError, "cannot be opened", lambda: lamella.run("rve", "none.yaml"))
+raises(lamella.InputError, "--colour", lambda: lamella.run("check", "contact.yaml", "--colour"))
 raises(AttributeError, "a response has no stress", lambda: one.stress)
 assert "Piola" in lamella.Responses.help("P") and "Pa" in lamella.Responses.help("P")
 PYTHON
