@@ -110,6 +110,21 @@ ln -s "$source/tests" tests
 cp "$source/docs/reference/python.md" .
 "$python" -m doctest python.md || fail "docs/reference/python.md"
 
+# installed by pip, away from the sources
+if "$python" -c 'import setuptools, pip, venv, wheel' 2>/dev/null; then
+  mkdir -p sources/build sources/include/lamella
+  cp -r "$source/python" sources
+  cp "$source/include/lamella/bind.h" sources/include/lamella
+  cp "$lamella" "$LAMELLA_LIBRARY/liblamella.so" sources/build
+  "$python" -m venv --system-site-packages installed
+  expect 0 installed/bin/pip install --no-build-isolation --no-deps --quiet ./sources/python
+  env -u PYTHONPATH -u LAMELLA_LIBRARY installed/bin/python -c '
+import lamella
+assert "installed" in lamella.__file__
+assert lamella.RVE("tests/scenes/shear-bonded.yaml").solve([[1, 0], [0, 1]], 2e4).converged
+assert lamella.run("check", "tests/scenes/shear-bonded.yaml").complete' || fail "the installed package"
+fi
+
 # beside mpi4py and petsc4py, where they are installed
 if "$python" -c 'import mpi4py, petsc4py' 2>/dev/null; then
   "$python" - <<'PYTHON' || fail "beside mpi4py and petsc4py"
