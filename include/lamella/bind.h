@@ -4,7 +4,7 @@
   Each function that returns an int returns 0, or an error code; LamErrorMessage then has the message, and where it is
   about a scene its file, line, column and key. A state that has no answer is no error: its response says so.
 
-  Loads are rows of LAM_BIND_LOAD numbers: F row by row, turgor and cohesion. Responses are rows of
+  Loads are rows of 11 numbers: F row by row, turgor and cohesion. Responses are rows of
   LamBindResponseSize() bytes, whose members LamBindMember tells.
 */
 #ifndef LAMELLA_BIND_H
@@ -24,7 +24,7 @@ LAM_EXPORT size_t LamBindResponseSize(void);
 /* Member i of a response; NULL behind the last. type: 'f' double, 'i' int, 'b' int that is 0 or 1, 'e' int with names,
    's' text of `count` bytes. unit: "1", "Pa", "s", "apothem", ...; help: what it is. */
 LAM_EXPORT const char *LamBindMember(int i, char *type, int *count, size_t *offset, const char **unit, const char **help);
-/* The name of a value of member i, of type 'e'; NULL: there is no such value. */
+/* The name of a value that member i, of type 'e', has in a response. */
 LAM_EXPORT const char *LamBindMemberName(int i, int value);
 
 typedef struct LamBindScene_s *LamBindScene;

@@ -54,7 +54,9 @@ class Responses:
         if kind == "s":
             return np.char.decode(values, "utf-8", "replace")
         if kind == "e":
-            return np.vectorize(lambda value: name_of(name, value), otypes=[object])(values)[()]
+            found, place = np.unique(values, return_inverse=True)
+            names = np.array([name_of(name, value) for value in found], dtype=object)
+            return names[place].reshape(values.shape)[()]
         return values
 
     @property
