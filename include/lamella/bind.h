@@ -17,13 +17,15 @@ LAM_C_BEGIN
 
 /* Starts MPI and PETSc where the process has not, and keeps errors (error.h). May be called again. */
 LAM_EXPORT int LamBindStart(void);
-/* What an error code means: 'i' a mistake in an input, 'f' a file that cannot be read or written, 'm' no memory, else ' '. */
+/* What an error code means: 'i' a mistake in an input, 'f' a file that cannot be read or written, 'm' no memory, else '
+ * '. */
 LAM_EXPORT char LamBindErrorKind(int code);
 
 LAM_EXPORT size_t LamBindResponseSize(void);
 /* Member i of a response; NULL behind the last. type: 'f' double, 'i' int, 'b' int that is 0 or 1, 'e' int with names,
    's' text of `count` bytes. unit: "1", "Pa", "s", "apothem", ...; help: what it is. */
-LAM_EXPORT const char *LamBindMember(int i, char *type, int *count, size_t *offset, const char **unit, const char **help);
+LAM_EXPORT const char *LamBindMember(int i, char *type, int *count, size_t *offset, const char **unit,
+                                     const char **help);
 /* The name of a value that member i, of type 'e', has in a response. */
 LAM_EXPORT const char *LamBindMemberName(int i, int value);
 
