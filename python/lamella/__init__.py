@@ -16,7 +16,7 @@ import numpy as np
 
 from ._library import DTYPE, MEMBERS, Error, InputError, check, ffi, library, name_of
 
-__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "run", "Run", "Error", "InputError"]
+__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "run", "Run", "Result", "Error", "InputError"]
 
 
 def _loads(F, turgor, cohesion):
@@ -179,4 +179,5 @@ class Database:
 
 
 from .program import Run, run  # noqa: E402  (need the names above)
+from .results import Result  # noqa: E402
 from .sweeps import Sweep, sweep  # noqa: E402

@@ -82,6 +82,21 @@ told = lamella.run("rve", "contact.yaml", "-o", "contact.h5", "--no-estimate")
 assert told.complete and len(told) == len(scene.F) and not told.warnings
 close(told[-1]["P"], 1e-6 * r.P[-1].ravel())
 assert lamella.run("info", "contact.h5")[0]["kind"] == "rve"
+
+# their files
+try:
+    import h5py
+except ImportError:
+    h5py = None
+if h5py:
+    with lamella.Result("contact.h5") as file:
+        assert file.kind == "rve" and list(file.keys) == list(range(1, len(scene.F) + 1)) and "contact" in file.scene
+        close(file.responses.P, r.P)
+        close(file.responses.energy, r.energy)
+        assert (file.responses.status == r.status).all() and (file.responses.stable == r.stable).all()
+        fields = file.fields(1)
+        assert np.abs(fields["x"]).max() > 50e-6 and fields["interface/gap"].shape == fields["interface/pressure"].shape
+        assert np.isclose(fields["interface/pressure"].max(), 1e6 * file.file["fields/1/interface/pressure"][()].max())
 assert not lamella.run("query", "table.h5", "-F", "1.01 0.02 0 0.99", "--accuracy", 1e-6).complete
 
 # mistakes
@@ -101,6 +116,7 @@ raises(lamella.InputError, "no block turgr", lambda: lamella.sweep("contact.yaml
 raises(lamella.InputError, "did you mean pressure?", lambda: lamella.sweep("contact.yaml", {"rve.turgor.presure": ["1 Pa"]}))
 raises(lamella.InputError, "cannot be opened", lambda: lamella.run("rve", "none.yaml"))
 raises(lamella.InputError, "--colour", lambda: lamella.run("check", "contact.yaml", "--colour"))
+raises(lamella.InputError, "contact.yaml: cannot be read", lambda: lamella.Result("contact.yaml"))
 raises(AttributeError, "a response has no stress", lambda: one.stress)
 assert "Piola" in lamella.Responses.help("P") and "Pa" in lamella.Responses.help("P")
 PYTHON
