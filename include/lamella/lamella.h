@@ -22,6 +22,7 @@
     material.h             a material law for other programs, in SI units
     reporter.h             what a long task reports while it runs
     error.h                the last error as text
+    bind.h                 plain functions, in SI units, for other languages
     archive.h              checkpoints
     version.h              LAMELLA_VERSION and its numbers
     export.h               symbol visibility
@@ -56,6 +57,7 @@
 #include <lamella/study.h>
 #include <lamella/material.h>
 #include <lamella/error.h>
+#include <lamella/bind.h>
 #include <lamella/archive.h>
 #include <lamella/version.h>
 
