@@ -98,12 +98,12 @@ struct LamBindScene_s {
 
 static PetscErrorCode ReadScene(const char *path, const char *text, LamBindScene *out)
 {
-  LamBindScene bound;
+  LamScene *scene;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&bound));
-  PetscCall(text ? LamSceneReadText(path, text, &bound->scene) : LamSceneRead(path, &bound->scene));
-  *out = bound;
+  PetscCall(text ? LamSceneReadText(path, text, &scene) : LamSceneRead(path, &scene));
+  PetscCall(PetscNew(out));
+  (*out)->scene = scene;
   PetscFunctionReturn(0);
 }
 
@@ -148,14 +148,14 @@ struct LamBindRVE_s {
 
 static PetscErrorCode CreateRVE(const LamScene *scene, LamBindRVE *out)
 {
-  LamBindRVE bound;
+  LamRVEState state;
+  LamRVE rve;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&bound));
-  bound->scales = scene->scales;
-  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &bound->rve));
-  PetscCall(LamRVEStateCreate(bound->rve, &bound->state));
-  *out = bound;
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &rve));
+  PetscCall(LamRVEStateCreate(rve, &state));
+  PetscCall(PetscNew(out));
+  **out = (struct LamBindRVE_s){.rve = rve, .state = state, .scales = scene->scales};
   PetscFunctionReturn(0);
 }
 
@@ -220,17 +220,18 @@ struct LamBindDatabase_s {
 static PetscErrorCode OpenDatabase(const char *path, LamBindDatabase *out)
 {
   LamMicrostructure micro;
-  LamBindDatabase bound;
+  LamDatabase database;
+  LamScales scales;
   const char *hash;
   LamTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&bound));
-  PetscCall(LamDatabaseOpen(path, &bound->database));
-  PetscCall(LamDatabaseGetMicrostructure(bound->database, &micro, &bound->scales, &hash));
-  PetscCall(LamDatabaseGetTable(bound->database, &table)); /* now: queries are then free of each other */
-  if (table) PetscCall(LamTableDestroy(&table));           /* the database keeps it */
-  *out = bound;
+  PetscCall(LamDatabaseOpen(path, &database));
+  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
+  PetscCall(LamDatabaseGetTable(database, &table)); /* now: queries are then free of each other */
+  if (table) PetscCall(LamTableDestroy(&table));    /* the database keeps it */
+  PetscCall(PetscNew(out));
+  **out = (struct LamBindDatabase_s){.database = database, .scales = scales};
   PetscFunctionReturn(0);
 }
 
