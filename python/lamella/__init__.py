@@ -54,7 +54,7 @@ class Responses:
         if kind == "s":
             return np.char.decode(values, "utf-8", "replace")
         if kind == "e":
-            found, place = np.unique(values, return_inverse=True)
+            found, place = np.unique(values.ravel(), return_inverse=True)
             names = np.array([name_of(name, value) for value in found], dtype=object)
             return names[place].reshape(values.shape)[()]
         return values
