@@ -12,9 +12,9 @@ packages=(
   build-essential cmake ninja-build pkg-config
   libpetsc-real-dev libmumps-dev libmetis-dev libsundials-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
-  libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev libcairo2-dev fonts-dejavu-core
+  libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev
   libmuparser-dev # expressions of the position
-  python3-numpy python3-cffi python3-yaml python3-h5py # of the Python package
+  python3-numpy python3-cffi python3-yaml python3-h5py python3-matplotlib # of the Python package
 )
 test_packages=(libcmocka-dev python3-pip python3-setuptools python3-venv python3-wheel python3-meshio)
 fuzz_packages=(clang libclang-rt-dev)

@@ -29,6 +29,9 @@ LAM_EXPORT const char *LamBindMember(int i, char *type, int *count, size_t *offs
 /* The name of a value that member i, of type 'e', has in a response. */
 LAM_EXPORT const char *LamBindMemberName(int i, int value);
 
+/* A text such as "0.02 MPa", in SI units; dimension: 0 a length, 1 a stress, 2 an angle, 3 a time, 4 a temperature. */
+LAM_EXPORT int LamBindQuantity(const char *text, int dimension, double *value);
+
 typedef struct LamBindScene_s *LamBindScene;
 /* Of a file, or of `text`, if it is not NULL, which messages call `path`. */
 LAM_EXPORT int LamBindSceneRead(const char *path, const char *text, LamBindScene *scene);
@@ -57,6 +60,9 @@ LAM_EXPORT void LamBindDatabaseScales(LamBindDatabase database, double scales[2]
 /* Answers n loads; may be called by several threads at a time. accuracy: largest estimated relative error of P. */
 LAM_EXPORT int LamBindDatabaseQuery(LamBindDatabase database, int n, const double loads[], double accuracy,
                                     void *responses);
+/* The number of its records, in the order of the file; levels, if it is not NULL: of each the refinement of the node of the
+   table that it is, 0 the coarsest, or -1: it is none. */
+LAM_EXPORT int LamBindDatabaseLevels(LamBindDatabase database, int levels[]);
 LAM_EXPORT void LamBindDatabaseClose(LamBindDatabase database);
 
 LAM_C_END

@@ -25,12 +25,12 @@ LAM_C_BEGIN
   fields of cells) or NUMBER. need: ALWAYS; BY_LAW (required by its law); OPTIONAL (default 0).
 */
 #define LAM_WALL_MATRIX_PARAMETERS(M, X)                                                                               \
-  M(X, C1, all, MODULUS, ALWAYS, "$C$_{1}", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
-  M(X, C2, all, MODULUS, ALWAYS, "$C$_{2}", "0.01 MPa", "Second Mooney-Rivlin modulus", FROM(0))
+  M(X, C1, all, MODULUS, ALWAYS, "$C_1$", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
+  M(X, C2, all, MODULUS, ALWAYS, "$C_2$", "0.01 MPa", "Second Mooney-Rivlin modulus", FROM(0))
 #define LAM_WALL_OWN_PARAMETERS(M, X)                                                                                  \
-  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C$_{4}", "1 MPa", "Fibre modulus", FROM(0))                         \
-  M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k$_{1}", "0.5 MPa", "Modulus of exponential fibres", FROM(0))         \
-  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k$_{2}", "5", "Exponent of the fibres", FROM(0))                       \
+  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C_4$", "1 MPa", "Fibre modulus", FROM(0))                         \
+  M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k_1$", "0.5 MPa", "Modulus of exponential fibres", FROM(0))         \
+  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k_2$", "5", "Exponent of the fibres", FROM(0))                       \
   M(X, dispersion, fibre_exponential, NUMBER, OPTIONAL, "dispersion", "0.1",                                           \
     "Dispersion of the fibres about the wall: 0 all along it, 1/3 in all directions", FROM(0), TO(1.0 / 3.0))
 #define LAM_WALL_PARAMETERS(M, X) LAM_WALL_MATRIX_PARAMETERS(M, X) LAM_WALL_OWN_PARAMETERS(M, X)
@@ -70,7 +70,7 @@ LAM_EXPORT const char *LamWallLacking(LamWallLawType law,
                                       PetscInt parameter); /* "fibres" or "C4", for a law without C4 */
 LAM_EXPORT PetscBool LamWallParameterIsModulus(PetscInt parameter);
 LAM_EXPORT PetscBool LamWallParameterIsOptional(PetscInt parameter); /* may be left out, and is 0 then */
-LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter);   /* for pictures: "$C$_{4}" */
+LAM_EXPORT const char *LamWallParameterSymbol(PetscInt parameter);   /* for pictures: "$C_4$" */
 /* Writes "fibre modulus" to `text`, and returns it. */
 LAM_EXPORT const char *LamWallParameterWords(PetscInt parameter, size_t size, char text[]);
 

@@ -14,9 +14,9 @@ import os
 
 import numpy as np
 
-from ._library import DTYPE, MEMBERS, Error, InputError, check, ffi, library, name_of
+from ._library import DTYPE, MEMBERS, Error, InputError, check, ffi, library, name_of, start
 
-__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "run", "Run", "Result", "Error", "InputError"]
+__all__ = ["Scene", "RVE", "Database", "Responses", "sweep", "Sweep", "run", "Run", "Result", "quantity", "plot", "Error", "InputError"]
 
 
 def _loads(F, turgor, cohesion):
@@ -107,6 +107,7 @@ class Scene:
     def __init__(self, path="scene", text=None):
         if isinstance(path, dict):
             path, text = "scene", json.dumps(path)
+        start()
         handle = ffi.new("LamBindScene *")
         check(library.LamBindSceneRead(os.fspath(path).encode(), ffi.NULL if text is None else text.encode(), handle))
         self._handle = ffi.gc(handle[0], library.LamBindSceneDestroy)
@@ -160,16 +161,37 @@ class RVE:
         check(library.LamBindRVEReset(self._handle))
 
 
+_DIMENSIONS = ("length", "stress", "angle", "time", "temperature")
+
+
+def quantity(text, dimension):
+    """A text such as "0.02 MPa" in SI units; dimension: length, stress, angle, time or temperature. InputError: its unit is
+    missing, unknown or of another dimension."""
+    start()
+    value = ffi.new("double *")
+    check(library.LamBindQuantity(str(text).encode(), _DIMENSIONS.index(dimension), value))
+    return value[0]
+
+
 class Database:
     """A database of `lamella build`. Threads may query it at a time."""
 
     def __init__(self, path):
+        start()
         handle = ffi.new("LamBindDatabase *")
         check(library.LamBindDatabaseOpen(os.fspath(path).encode(), handle))
         self._handle = ffi.gc(handle[0], library.LamBindDatabaseClose)
         scales = ffi.new("double[2]")
         library.LamBindDatabaseScales(self._handle, scales)
         self.apothem, self.stress_unit = scales  #: m; C1 + C2 of the walls, Pa
+
+    @property
+    def levels(self):
+        """Of each record in the order of the file: the refinement of the node of the table that it is, 0 the coarsest; -1:
+        it is none."""
+        levels = np.empty(library.LamBindDatabaseLevels(self._handle, ffi.NULL), np.int32)
+        library.LamBindDatabaseLevels(self._handle, ffi.from_buffer("int[]", levels, require_writable=True))
+        return levels
 
     def query(self, F, turgor=0.0, cohesion=0.0, accuracy=0.01):
         """Answers states from the database; arguments as of RVE.solve. accuracy: largest estimated relative error of P
@@ -181,3 +203,11 @@ class Database:
 from .program import Run, run  # noqa: E402  (need the names above)
 from .results import Result  # noqa: E402
 from .sweeps import Sweep, sweep  # noqa: E402
+
+
+def __getattr__(name):
+    """lamella.plot is loaded when it is used: matplotlib takes half a second."""
+    if name != "plot":
+        raise AttributeError(f"module lamella has no {name}")
+    from importlib import import_module
+    return import_module(".plot", __name__)

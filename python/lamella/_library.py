@@ -51,7 +51,10 @@ def check(code):
     raise kinds.get(library.LamBindErrorKind(code), Error)(message)
 
 
-check(library.LamBindStart())
+def start():
+    """Starts MPI and PETSc where the process has not: before the first scene or database, since files and pictures need
+    neither."""
+    check(library.LamBindStart())
 
 
 def _members():

@@ -88,11 +88,12 @@ typedef enum {
   LAM_OPTION_FLAG,     /* PetscBool */
   LAM_OPTION_TEXT,     /* const char *, borrowed */
   LAM_OPTION_ACCURACY, /* PetscReal above 0, or inf */
-  LAM_OPTION_STATE,    /* PetscInt from 0 on, or LAM_PLOT_LAST of plot.h for "last" */
+  LAM_OPTION_STATE,    /* PetscInt from 0 on, or LAM_STATE_LAST for "last" */
   LAM_OPTION_FROM_0,   /* PetscInt; this one and the next two: the least that is allowed */
   LAM_OPTION_FROM_1,
   LAM_OPTION_FROM_2
 } LamOptionType;
+enum { LAM_STATE_PEAK = -1, LAM_STATE_LAST = -2 };
 typedef struct {
   char short_name; /* 0: none */
   const char *long_name;
@@ -189,9 +190,11 @@ PetscErrorCode LamTestPrint(const LamTest *test, const LamTestOptions *options, 
 /* The names that `plot --field` knows, by kind of file: some occur in several. */
 void LamPlotVisitFields(void (*visit)(void *ctx, const char name[]), void *ctx);
 
-/* ---- tradeoff_plot.c ---- */
-/* Draws the diagram; the ending of `path` selects the format. */
-PetscErrorCode LamTradeoffPlot(const LamTradeoff *t, const char path[]);
+/* ---- python.c ---- */
+/* Has the package in python/ draw what the request asks for: {"input": FILE, "outputs": [FIG, ...], ...}, as
+   python/lamella/plot/__main__.py takes it. Takes ownership of the request. *exit_status is that of the drawing, which
+   has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
+PetscErrorCode LamPythonDraw(json_t *request, int *exit_status);
 
 /* ---- fe2_report.c ---- */
 /* Human-readable summary of an FE2 run, from the JSON object that its file holds. */

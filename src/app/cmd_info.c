@@ -3,7 +3,6 @@
 */
 #include "app.h"
 #include "fe2_summary.h"
-#include "plot_map.h"
 #include <math.h>
 #include <string.h>
 
@@ -214,30 +213,79 @@ static PetscErrorCode ReadRun(const char path[], json_t *info)
 
 /* ---- the axes and modes of a map ---- */
 
-static json_t *AxisToJSON(const LamMapSide *side)
+/* Adds a text of the file; PETSC_ERR_USER_INPUT: it has none. */
+static PetscErrorCode AddText(const char path[], char letter, const char name[], json_t *axis)
 {
-  return json_pack("{s:o, s:o, s:o, s:o, s:I}", "quantity", LamJSONText(side->quantity), "unit",
-                   LamJSONText(side->unit), "from", LamJSONReal(side->from), "to", LamJSONReal(side->to), "points",
-                   (json_int_t)side->n);
+  char dataset[LAM_NAME_LENGTH], *text;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(dataset, sizeof(dataset), "/map/%c/%s", letter, name));
+  PetscCall(LamFileReadText(path, dataset, &found, &text));
+  PetscCheck(found, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: holds no %s; it is damaged, or older than this program",
+             path, dataset);
+  json_object_set_new(axis, name, LamJSONText(text));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadAxis(const char path[], char letter, json_t *map)
+{
+  char name[LAM_NAME_LENGTH], key[2] = {letter, '\0'};
+  PetscInt rank = 0, dims[4];
+  PetscReal *values;
+  PetscBool found;
+  json_t *axis = json_object();
+
+  PetscFunctionBeginUser;
+  json_object_set_new(map, key, axis);
+  PetscCall(AddText(path, letter, "quantity", axis));
+  PetscCall(AddText(path, letter, "unit", axis));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/map/%c/values", letter));
+  PetscCall(LamFileReadReals(path, name, &found, &rank, dims, &values));
+  PetscCheck(found && rank == 1 && dims[0] > 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds no %s; it is damaged, or older than this program", path, name);
+  json_object_set_new(axis, "from", LamJSONReal(values[0]));
+  json_object_set_new(axis, "to", LamJSONReal(values[dims[0] - 1]));
+  json_object_set_new(axis, "points", json_integer((json_int_t)dims[0]));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+/* Numbers of modes refer to the file's own list of names. */
+static PetscErrorCode CountModes(const char path[], json_t *modes)
+{
+  PetscInt rank = 0, dims[4] = {0}, *number, line = 0, total = 1;
+  PetscBool found, has_names;
+  char *names, *rest;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamFileReadText(path, "/map/modes", &has_names, &names));
+  PetscCall(LamFileReadInts(path, "/map/mode", &found, &rank, dims, &number));
+  PetscCheck(found && has_names && rank == 2, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: holds no /map/mode or /map/modes; it is damaged, or older than this program", path);
+  for (PetscInt i = 0; i < rank; i++) total *= dims[i];
+  for (char *name = strtok_r(names, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest), line++) {
+    json_int_t count = 0;
+
+    for (PetscInt i = 0; i < total; i++) count += number[i] == line;
+    if (count) json_object_set_new(modes, name, json_integer(count));
+  }
+  PetscCall(PetscFree(number));
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadMap(const char path[], json_t *info)
 {
-  LamMapPicture map;
-  json_t *modes;
+  json_t *map = json_object(), *modes = json_object();
 
   PetscFunctionBeginUser;
-  PetscCall(LamMapRead(path, &map));
-  modes = json_object();
-  for (PetscInt k = 0; k < LAM_FAILURE_MODE_COUNT; k++) {
-    PetscInt count = 0;
-
-    for (PetscInt i = 0; i < map.n; i++) count += map.mode[i] == k;
-    if (count) json_object_set_new(modes, LamFailureModeNames[k], json_integer((json_int_t)count));
-  }
-  json_object_set_new(info, "map",
-                      json_pack("{s:o, s:o, s:o}", "x", AxisToJSON(&map.x), "y", AxisToJSON(&map.y), "modes", modes));
-  PetscCall(LamMapPictureDestroy(&map));
+  json_object_set_new(info, "map", map);
+  PetscCall(ReadAxis(path, 'x', map));
+  PetscCall(ReadAxis(path, 'y', map));
+  json_object_set_new(map, "modes", modes);
+  PetscCall(CountModes(path, modes));
   PetscFunctionReturn(0);
 }
 

@@ -167,10 +167,10 @@ static json_t *Mesh(const LamMicrostructure *micro)
 static json_t *Setting(const LamMeasurement *m)
 {
   const LamSetting *s = &m->setting;
-  json_t *o = json_pack("{s:s, s:s, s:b, s:o, s:[I,I], s:s, s:o}", "family", LamKnobNames[s->knob], "setting", s->label,
-                        "planned", s->planned, "mesh", Mesh(&s->micro), "cells", (json_int_t)s->micro.cells[0],
-                        (json_int_t)s->micro.cells[1], "strategy", LamStrategyNames[s->strategy], "tolerance",
-                        LamJSONReal(s->tolerance));
+  json_t *o = json_pack("{s:s, s:s, s:s, s:b, s:o, s:[I,I], s:s, s:o}", "family", LamKnobNames[s->knob], "setting",
+                        s->label, "mark", s->mark, "planned", s->planned, "mesh", Mesh(&s->micro), "cells",
+                        (json_int_t)s->micro.cells[0], (json_int_t)s->micro.cells[1], "strategy",
+                        LamStrategyNames[s->strategy], "tolerance", LamJSONReal(s->tolerance));
 
   if (s->accuracy > 0) json_object_set_new(o, "accuracy", LamJSONReal(s->accuracy));
   if (s->knob == LAM_KNOB_MACRO) json_object_set_new(o, "response", json_string(LamFE2ResponseNames[s->response]));
@@ -270,9 +270,9 @@ static PetscErrorCode WriteData(const LamTradeoff *t, const char directory[], co
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) json_array_append_new(settings, Measured(&t->measured[i]));
   PetscCall(WriteJSON(directory, "tradeoff",
-                      json_pack("{s:s, s:s, s:s, s:o, s:I, s:o, s:b, s:s, s:o, s:o, s:o, s:o}", "version",
-                                LAMELLA_VERSION, "scene", t->scene->path, "tissue", hash, "budget",
-                                LamJSONReal(t->budget), "repeats", (json_int_t)t->repeats, "seconds",
+                      json_pack("{s:s, s:s, s:s, s:s, s:o, s:I, s:o, s:b, s:s, s:o, s:o, s:o, s:o}", "version",
+                                LAMELLA_VERSION, "scene", t->scene->path, "tissue", hash, "volume", OpeningName(t),
+                                "budget", LamJSONReal(t->budget), "repeats", (json_int_t)t->repeats, "seconds",
                                 LamJSONReal(t->seconds), "stopped", t->stopped, "origin", t->states.origin, "states",
                                 States(t), "reference", Reference(t), "left_out", LeftOut(t), "settings", settings)));
   PetscFunctionReturn(0);
@@ -301,19 +301,30 @@ static PetscErrorCode WriteModel(const LamTradeoff *t, const char directory[], c
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode WriteFiles(const LamTradeoff *t, const char directory[])
+/* Draws DIR/tradeoff.json; where that fails its numbers are there. */
+static PetscErrorCode DrawFiles(const char directory[], int *exit_status)
 {
-  static const char *const endings[] = {"png", "svg"};
-  char hash[LAM_HASH_LENGTH], path[PETSC_MAX_PATH_LEN];
+  char json[PETSC_MAX_PATH_LEN], png[PETSC_MAX_PATH_LEN], svg[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(json, sizeof(json), "%s/tradeoff.json", directory));
+  PetscCall(PetscSNPrintf(png, sizeof(png), "%s/tradeoff.png", directory));
+  PetscCall(PetscSNPrintf(svg, sizeof(svg), "%s/tradeoff.svg", directory));
+  PetscCall(
+      LamPythonDraw(json_pack("{s:s, s:[s,s], s:b}", "input", json, "outputs", png, svg, "silent", 1), exit_status));
+  if (*exit_status) fprintf(stderr, "lamella tradeoff: %s has the numbers; lamella plot draws it again\n", json);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteFiles(const LamTradeoff *t, const char directory[], int *exit_status)
+{
+  char hash[LAM_HASH_LENGTH];
 
   PetscFunctionBeginUser;
   PetscCall(LamMicrostructureHashTissue(&t->scene->micro, hash));
   PetscCall(WriteData(t, directory, hash));
   PetscCall(WriteModel(t, directory, hash));
-  for (size_t e = 0; e < PETSC_STATIC_ARRAY_LENGTH(endings); e++) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/tradeoff.%s", directory, endings[e]));
-    PetscCall(LamTradeoffPlot(t, path));
-  }
+  PetscCall(DrawFiles(directory, exit_status));
   PetscFunctionReturn(0);
 }
 
@@ -360,8 +371,8 @@ static PetscErrorCode Solve(Command *run, int *exit_status)
     PetscCall(PrintObjects(t));
   else
     PrintTable(t);
-  if (run->directory) PetscCall(WriteFiles(t, run->directory));
-  *exit_status = ExitStatus(t);
+  if (run->directory) PetscCall(WriteFiles(t, run->directory, exit_status));
+  if (!*exit_status) *exit_status = ExitStatus(t);
   PetscCall(LamTradeoffDestroy(t));
   PetscFunctionReturn(0);
 }

@@ -2,7 +2,6 @@
   Command line of a command: GNU conventions by getopt_long; the help is generated from the same table.
 */
 #include "app.h"
-#include "plot.h"
 #include "word_distance.h"
 #include <errno.h>
 #include <getopt.h>
@@ -103,7 +102,7 @@ static PetscBool ReadValue(const char command[], const LamOption *option, const 
     return LamUsageError(command, exit_status, "--%s \"%s\": a relative error is wanted, such as 0.01, or inf for any",
                          option->long_name, text);
   case LAM_OPTION_STATE:
-    *(PetscInt *)option->value = LAM_PLOT_LAST;
+    *(PetscInt *)option->value = LAM_STATE_LAST;
     if (!strcmp(text, "last")) return PETSC_TRUE; /* fallthrough */
   default:
     errno = 0;

@@ -90,6 +90,11 @@ static LamLoad LoadOf(const double row[LOAD], const LamScales *scales)
   return load;
 }
 
+int LamBindQuantity(const char *text, int dimension, double *value)
+{
+  return (int)LamQuantityParse(text, (LamDimension)dimension, value);
+}
+
 /* ---- scenes ---- */
 
 struct LamBindScene_s {
@@ -262,6 +267,20 @@ static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], 
 int LamBindDatabaseQuery(LamBindDatabase database, int n, const double loads[], double accuracy, void *responses)
 {
   return (int)Query(database, n, loads, accuracy, (LamResponse *)responses);
+}
+
+int LamBindDatabaseLevels(LamBindDatabase database, int levels[])
+{
+  const LamResponse *records;
+  const PetscInt64 *keys;
+  LamGrid grid = NULL;
+  PetscInt n = 0;
+
+  (void)LamDatabaseGetRecords(database->database, &n, &records, &keys);
+  (void)LamDatabaseGetGrid(database->database, &grid);
+  for (PetscInt i = 0; levels && i < n; i++)
+    levels[i] = grid && LamKeyIsNode(keys[i]) ? (int)LamGridNodeLevel(grid, keys[i]) : -1;
+  return (int)n;
 }
 
 void LamBindDatabaseClose(LamBindDatabase database)

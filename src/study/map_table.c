@@ -86,15 +86,30 @@ static PetscErrorCode WriteNames(LamRecordWriter writer, const char name[], Pets
   PetscFunctionReturn(0);
 }
 
+/* For pictures: "fibre modulus $C_4$". */
+static void LabelOf(LamMapQuantity quantity, size_t size, char label[])
+{
+  const char *const name = LamMapQuantityNames[quantity];
+  char words[64];
+
+  snprintf(label, size, "%s", name);
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (!strcmp(name, LamWallParameterNames[k]))
+      snprintf(label, size, "%s %s", LamWallParameterWords(k, sizeof(words), words), LamWallParameterSymbol(k));
+  for (char *c = label; *c; c++)
+    if (*c == '_' && !strchr(label, '$')) *c = ' ';
+}
+
 static PetscErrorCode WriteAxis(LamRecordWriter writer, char letter, const LamMapAxis *axis, const LamScales *scales)
 {
   PetscReal *values, scale;
   const char *const unit = LamMapQuantityUnit(axis->quantity, scales, &scale);
-  const char *const names[] = {"quantity", "spacing", "unit"};
-  const char *const texts[] = {LamMapQuantityNames[axis->quantity], axis->is_log ? "log" : "linear", unit};
-  char name[LAM_NAME_LENGTH];
+  const char *const names[] = {"quantity", "spacing", "unit", "label"};
+  char name[LAM_NAME_LENGTH], label[LAM_NAME_LENGTH];
+  const char *const texts[] = {LamMapQuantityNames[axis->quantity], axis->is_log ? "log" : "linear", unit, label};
 
   PetscFunctionBeginUser;
+  LabelOf(axis->quantity, sizeof(label), label);
   PetscCall(PetscMalloc1(axis->points, &values));
   for (PetscInt i = 0; i < axis->points; i++) values[i] = LamMapAxisValue(axis, i) * scale;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(names); i++) {

@@ -221,7 +221,7 @@ static PetscErrorCode SolveStates(LamRVERun *run)
     CountDoubts(run, &responses[0]);
     WarnOfSuction(run, &responses[0]);
     LamCrackAdd(&run->crack, &run->scene->micro, run->solved, &responses[0]);
-    if (run->readings)
+    if (run->readings || run->writer)
       PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
     if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
@@ -237,6 +237,23 @@ static PetscErrorCode SolveStates(LamRVERun *run)
   PetscFunctionReturn(0);
 }
 
+/* What was read off the curve, for pictures. */
+static PetscErrorCode WriteTest(LamRVERun *run)
+{
+  json_t *read;
+  char *text;
+
+  PetscFunctionBeginUser;
+  if (run->test.count < 2) PetscFunctionReturn(0);
+  read = LamTestToJSON(&run->test, 0, NULL);
+  text = json_dumps(read, 0);
+  json_decref(read);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the readings");
+  PetscCall(LamRecordWriterText(run->writer, "/test", text));
+  free(text);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVERunSolve(LamRVERun *run)
 {
   PetscErrorCode ierr = 0;
@@ -249,6 +266,7 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
     if (!ierr) ierr = LamXDMFOpen(run->out_path, "states", &run->xdmf);
   }
   if (!ierr) ierr = SolveStates(run);
+  if (!ierr && run->writer) ierr = WriteTest(run);
   if (run->csv.out) {
     const PetscErrorCode written = LamBesideClose(&run->csv);
 

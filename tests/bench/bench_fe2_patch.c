@@ -2,14 +2,13 @@
   FE2 against a direct patch of n x n cells between grips (fe2_patch.h): curves of stress and opening as n
   grows, and of FE2 as its mesh gets finer; prints figures, asserts nothing.
 
-    bench_fe2_patch [--full] [--plot FIGURE]
-      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (6 minutes of processor time); without it one
-  minute
-      --plot   draws the curves: .png, .svg or .pdf
+    bench_fe2_patch [--full] [--csv TABLE]
+      --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (6 minutes of processor time);
+               without it one minute
+      --csv    writes the curves, which fe2_patch_figure.py draws
 */
 #include "options.h"
 #include "support/fe2_patch.h"
-#include "plot.h"
 
 #define STEPS SCALES_STEPS_MAX
 #define BLOCKS 4
@@ -106,109 +105,38 @@ static PetscErrorCode SolveAndPrint(PetscBool full, Study *study)
   PetscFunctionReturn(0);
 }
 
-/* ---- the picture ---- */
-static const double *ValuesOf(const ScalesCurve *curve, PetscBool opening)
+/* ---- the curves as a table ---- */
+
+static void WriteCurve(FILE *out, const ScalesCase *c, const char name[], const ScalesCurve *curve)
 {
-  return opening ? curve->opening : curve->stress;
-}
+  for (int s = 0; s < curve->steps; s++) {
+    const double share = (s + 1.0) / STEPS, load = c->shear != 0 ? share * c->shear : 1 + share * c->stretch;
 
-/* Curves of blocks over the load, and FE2 on top of them. */
-static PetscErrorCode DrawCurves(LamCanvas canvas, LamRect outer, const Study *study, PetscBool opening)
-{
-  const ScalesCase *c = study->scales_case;
-  const int n = study->block_count;
-  LamAxes axes = {.x = {.label = c->shear != 0 ? "shear $F$_{12}" : "stretch $F$_{22}"},
-                  .y = {.label = opening         ? "opening, share of volume"
-                                 : c->shear != 0 ? "nominal stress $P$_{12}"
-                                                 : "nominal stress $P$_{22}",
-                        .unit = opening ? NULL : "MPa"}};
-  LamSeries series[BLOCKS + 1];
-
-  PetscFunctionBeginUser;
-  for (int k = 0; k <= n; k++) {
-    const ScalesCurve *curve = k < n ? &study->block[k] : &study->limit;
-
-    PetscCall(LamSeriesCreate(curve->steps, &series[k]));
-    for (int s = 0; s < curve->steps; s++) {
-      series[k].x[s] = c->shear != 0 ? (s + 1.0) / STEPS * c->shear : 1 + (s + 1.0) / STEPS * c->stretch;
-      series[k].y[s] = ValuesOf(curve, opening)[s];
-    }
-    series[k].style = k < n ? (LamStyle){LamColourOfLine(k), (LamMarker)k, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE}
-                            : (LamStyle){{0, 0, 0}, LAM_MARKER_CIRCLE, PETSC_FALSE, PETSC_TRUE, PETSC_FALSE};
-    if (k < n)
-      snprintf(series[k].label, LAM_SERIES_LABEL, "%d \u00d7 %d", blocks[k], blocks[k]);
-    else
-      snprintf(series[k].label, LAM_SERIES_LABEL, "FE²");
+    fprintf(out, "%s,%s,%d,%.9g,%.9g,%.9g\n", c->name, name, c->shear != 0 ? 12 : 22, load, curve->stress[s],
+            curve->opening[s]);
   }
-  LamChart(canvas, outer, &axes, n + 1, series);
-  for (int k = 0; k <= n; k++) PetscCall(LamSeriesDestroy(&series[k]));
-  PetscFunctionReturn(0);
 }
 
-/* Differences of the blocks from FE2, both axes logarithmic. */
-static PetscErrorCode DrawDifferences(LamCanvas canvas, LamRect outer, const Study studies[], PetscBool opening)
+static PetscErrorCode WriteCurves(const char path[], const Study studies[])
 {
-  LamAxes axes = {.x = {.label = "log_{2} of cells in a row $n$", .whole = PETSC_TRUE},
-                  .y = {.label = opening ? "log_{10} of difference of opening" : "log_{10} of difference of stress"}};
-  LamSeries series[SCALES_CASES];
-  PetscInt count = 0;
+  FILE *out = fopen(path, "w");
+  char name[16];
 
   PetscFunctionBeginUser;
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", path);
+  fprintf(out, "case,curve,component,load,stress,opening\n");
   for (int i = 0; i < SCALES_CASES; i++) {
-    const Study *study = &studies[i];
-    LamSeries *s = &series[count];
-
-    if (study->limit.steps < STEPS || (opening && study->scales_case->interface == LAM_INTERFACE_BONDED)) continue;
-    PetscCall(LamSeriesCreate(study->block_count, s));
-    for (int k = 0; k < study->block_count; k++) {
-      s->x[k] = log2(blocks[k]);
-      s->y[k] =
-          study->block[k].steps < STEPS
-              ? NAN
-              : log10(ScalesDifference(STEPS, ValuesOf(&study->block[k], opening), ValuesOf(&study->limit, opening)));
+    for (int k = 0; k < studies[i].block_count; k++) {
+      snprintf(name, sizeof(name), "%d", blocks[k]);
+      WriteCurve(out, studies[i].scales_case, name, &studies[i].block[k]);
     }
-    s->style = (LamStyle){LamColourOfLine(i / 3), (LamMarker)(i % 3), (PetscBool)(i % 3 == 1), PETSC_TRUE,
-                          (PetscBool)(i % 3 == 2)};
-    snprintf(s->label, LAM_SERIES_LABEL, "%s", study->scales_case->name);
-    count++;
+    WriteCurve(out, studies[i].scales_case, "FE2", &studies[i].limit);
   }
-  LamChart(canvas, outer, &axes, count, series);
-  for (PetscInt k = 0; k < count; k++) PetscCall(LamSeriesDestroy(&series[k]));
+  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s", path);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Draw(const char path[], const Study studies[])
-{
-  const double width = 0.5 * LAM_PLOT_WIDTH, height = 190;
-  const struct {
-    int study;
-    PetscBool opening;
-  } curves[4] = {{SCALES_BONDED_FREE_SHEARED, PETSC_FALSE},
-                 {SCALES_CONTACT_FREE_PULLED, PETSC_FALSE},
-                 {SCALES_CONTACT_FREE_SHEARED, PETSC_TRUE},
-                 {SCALES_CONTACT_AFFINE_PRESSED, PETSC_FALSE}};
-  LamCanvas canvas;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamCanvasCreate(path, LAM_PLOT_WIDTH, 3 * height + 60, &canvas));
-  for (int k = 0; k < 4; k++) {
-    const LamRect outer = {9 + k % 2 * width, 18 + k / 2 * (height + 10), width - 18, height - 18};
-
-    LamCanvasSetColour(canvas, (LamColour){0, 0, 0});
-    LamCanvasText(canvas, outer.x + 0.5 * outer.width, outer.y - 8, 0.5, 0, LAM_TEXT_SIZE,
-                  scales_cases[curves[k].study].name);
-    PetscCall(DrawCurves(canvas, outer, &studies[curves[k].study], curves[k].opening));
-  }
-  for (int k = 0; k < 2; k++) {
-    const LamRect outer = {9 + k * width, 2 * height + 30, width - 18, height + 24};
-
-    PetscCall(DrawDifferences(canvas, outer, studies, (PetscBool)k));
-  }
-  PetscCall(LamCanvasFinish(&canvas));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Run(PetscBool full, const char figure[])
+static PetscErrorCode Run(PetscBool full, const char table[])
 {
   Study studies[SCALES_CASES] = {{0}};
 
@@ -221,17 +149,17 @@ static PetscErrorCode Run(PetscBool full, const char figure[])
     studies[i].scales_case = &scales_cases[i];
     PetscCall(SolveAndPrint(full, &studies[i]));
   }
-  if (figure) PetscCall(Draw(figure, studies));
+  if (table) PetscCall(WriteCurves(table, studies));
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
-  char figure[PETSC_MAX_PATH_LEN];
-  PetscBool plots;
+  char table[PETSC_MAX_PATH_LEN];
+  PetscBool writes;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  if (PetscOptionsGetString(NULL, NULL, "--plot", figure, sizeof(figure), &plots)) return 1;
-  if ((plots && LamCanvasCheckPath(figure)) || Run(HasOption("--full"), plots ? figure : NULL)) return 1;
+  if (PetscOptionsGetString(NULL, NULL, "--csv", table, sizeof(table), &writes)) return 1;
+  if (Run(HasOption("--full"), writes ? table : NULL)) return 1;
   return EndBench();
 }

@@ -19,7 +19,7 @@ for header in "$dir"/usr/include/lamella/*.h; do
   c++ -std=c++17 -Wall -Werror -fsyntax-only -x c++ $(pkg-config --cflags lamella) - <<<"#include <$name>" || fail "$name as C++"
 done
 
-library=$(find "$dir/usr" -name 'liblamella.a' -o -name 'liblamella.so')
+library=$(find "$dir/usr/lib" -name 'liblamella.a' -o -name 'liblamella.so')
 if [ "${library%.a}" != "$library" ]; then
   cc -shared -o "$dir/liblamella.so" -Wl,--whole-archive "$library" -Wl,--no-whole-archive
   library=$dir/liblamella.so

@@ -35,7 +35,7 @@ C
 pc=$(dirname "$(find "$dir/usr" -name lamella.pc)")
 export PKG_CONFIG_PATH=$pc
 cc "$dir/user/main.c" -o "$dir/by-pkg-config" $(pkg-config --cflags --libs lamella)
-library=$(find "$dir/usr" -name 'liblamella.a' -o -name 'liblamella.so')
+library=$(find "$dir/usr/lib" -name 'liblamella.a' -o -name 'liblamella.so')
 if [ "${library%.a}" != "$library" ]; then # the same objects
   cc -shared -o "$dir/liblamella.so" -Wl,-soname,liblamella.so -Wl,--whole-archive "$library" -Wl,--no-whole-archive $(pkg-config --libs lamella)
   library=$dir/liblamella.so

@@ -57,8 +57,7 @@ const char *__asan_default_options(void)
 __attribute__((visibility("default"))) const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
-  return "leak:libhdf5\nleak:libmpi\nleak:libopen-pal\nleak:libopen-rte\nleak:libfontconfig\nleak:libcairo\nleak:"
-         "libpetsc\n";
+  return "leak:libhdf5\nleak:libmpi\nleak:libopen-pal\nleak:libopen-rte\nleak:libpetsc\n";
 }
 
 __attribute__((visibility("default"))) const char *__lsan_default_options(void);

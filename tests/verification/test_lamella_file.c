@@ -1,8 +1,7 @@
 /*
-  What a run leaves of tissue with a lamella: fields in the file, columns in the table, lines and their key in pictures.
+  What a run leaves of tissue with a lamella: fields in the file, columns in the table.
 */
 #include "support/rve_fixture.h"
-#include "plot.h"
 #include "rve_run.h"
 #include <stdio.h>
 #include <string.h>
@@ -105,14 +104,21 @@ TEST_IS(TheFileHasSlip, FileHas("slip", 1, fields.slip, 1.0));
 TEST_IS(TheFileHasNormalTraction, FileHas("normal_traction", 1, fields.normal_traction, TISSUE_STRESS));
 TEST_IS(TheFileHasShearTraction, FileHas("shear_traction", 1, fields.shear_traction, TISSUE_STRESS));
 
-TEST(ContactHasNoLamellaInItsFile)
+static PetscBool ContactHas(const char name[])
 {
+  PetscInt rank, dims[4];
+  PetscReal *values = NULL;
   PetscBool found;
 
-  CHECK(LamPlotHas(CONTACT ".h5", "/fields/1/interface/pressure", &found));
-  assert_true(found);
-  CHECK(LamPlotHas(CONTACT ".h5", "/fields/1/interface/broken", &found));
-  assert_false(found);
+  CHECK(LamFileReadReals(CONTACT ".h5", name, &found, &rank, dims, &values));
+  CHECK(PetscFree(values));
+  return found;
+}
+
+TEST(ContactHasNoLamellaInItsFile)
+{
+  assert_true(ContactHas("/fields/1/interface/pressure"));
+  assert_false(ContactHas("/fields/1/interface/broken"));
 }
 
 /* Number in column `name` of the last line; NAN: there is no such column. */
@@ -146,32 +152,5 @@ TEST(TheTableHasBrokenShareAndEnergies)
   assert_true(last.broken_fraction > 0.1 && last.dissipated > 0.0);
   assert_true(isnan(Cell(CONTACT ".csv", "broken_fraction")));
 }
-
-static int intact, broken;
-
-static void CountTexts(const char text[], LamRect box)
-{
-  intact += !strcmp(text, "lamella: intact");
-  broken += !strcmp(text, "broken") && box.x + box.width < LAM_PLOT_WIDTH;
-}
-
-/* The key of the lamella is in the picture, or is not. */
-static void Shows(const char input[], PetscBool strip, int count)
-{
-  const LamPlotRequest request = {
-      .input = input, .output = "test_lamella_file.pdf", .state = LAM_PLOT_PEAK, .strip = strip};
-
-  intact = broken = 0;
-  LamPlotTextVisit = CountTexts;
-  CHECK(LamPlotRVE(&request));
-  LamPlotTextVisit = NULL;
-  remove(request.output);
-  assert_int_equal(intact, count);
-  assert_int_equal(broken, count);
-}
-
-TEST_IS(ThePictureNamesTheLamella, Shows(LAMELLA ".h5", PETSC_FALSE, 1));
-TEST_IS(TheStripNamesTheLamella, Shows(LAMELLA ".h5", PETSC_TRUE, 1));
-TEST_IS(ThePictureOfContactNamesNone, Shows(CONTACT ".h5", PETSC_FALSE, 0));
 
 TEST_GROUP(.petsc = 1, .setup = RunBoth, .teardown = Leave);

@@ -1,0 +1,101 @@
+"""Pictures of what files hold, as figures of matplotlib that can be changed before they are saved.
+
+    import lamella
+    page = lamella.plot.draw("shear.h5", field="fibre_stretch")
+    page.axes[0].set_title("my tissue")
+    page.save("shear.pdf")
+
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map` and `tradeoff` say which it is. All take
+    title   text, or False: none
+    size    width and height of the page, inches
+    range   limits of the colour scale of the field, in its unit on the colour bar
+    x, y    limits of the axes of charts, in the units that are shown
+A Page is a matplotlib Figure with `save`; a notebook shows it as it is.
+"""
+from importlib import import_module
+
+from .. import InputError
+from .page import Page, check_path
+from .read import Source
+
+__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "save", "fields", "Page"]
+_MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
+_OPTIONS = {"title", "size", "range", "x", "y"}
+
+
+def _draw(kind, path, options):
+    if kind == "tradeoff":
+        return import_module(".work_precision", __name__).draw(path, **options)
+    with Source(path) as source:
+        module = _MODULES.get(source.kind)
+        if module is None or kind not in (None, source.kind):
+            raise InputError(f"{path}: is of kind \"{source.kind}\"; " +
+                             (f"lamella.plot.{kind} draws files of {kind}" if module else
+                              "plot draws rve, fe2, database, map and process files"))
+        if source.kind != "database":
+            import_module(".tables", __name__).refuse(path, options)
+        for name, kinds in (("strip", ("rve", "fe2", "process")), ("film", ("fe2", "process")), ("map", ("process",))):
+            if options.get(name) and source.kind not in kinds:
+                raise InputError(f"{path}: is of kind \"{source.kind}\"; --{name} draws files of {', '.join(kinds)}")
+        options = {name: value for name, value in options.items()
+                   if not (value is None or (value is False and name != "title"))}
+        drawn = import_module(f".{module}", __name__).draw(source, **options)
+        return drawn if isinstance(drawn, Page) else list(drawn)
+
+
+def draw(path, **options):
+    """A Page of what a file holds, or with film a list of them. Options: those of the function of its kind. InputError:
+    what the file lacks, or an option that does not fit."""
+    return _draw(None, path, options)
+
+
+def rve(path, state=None, field=None, strip=False, **options):
+    """The tissue of `rve -o` at a state (its number, "last", None: the peak load), coloured by `field` (wall_stress,
+    fibre_stretch), and the effective stress over the states. strip: up to eight states beside each other."""
+    return _draw("rve", path, {"state": state, "field": field, "strip": strip, **options})
+
+
+def fe2(path, state=None, field=None, strip=False, film=False, **options):
+    """The body of `fe2 -o`, or of a process, at a step, coloured by `field` (docs/reference/pictures.md), with its
+    reactions. strip: up to eight steps beside each other. film: a list of Pages of a process."""
+    return _draw("fe2", path, {"state": state, "field": field, "strip": strip, "film": film, **options})
+
+
+def process(path, state=None, field=None, strip=False, film=False, map=None, **options):
+    """Charts of `process -o` against time; state: beside the cells of this state; film: a list of Pages, one for each state
+    whose cells are kept; map: a file of `map -o`, over which the path of the tissue is drawn."""
+    return _draw("process", path, {"state": state, "field": field, "strip": strip, "film": film, "map": map, **options})
+
+
+def database(path, field=None, angle=None, suction=None, turgor=None, accuracy=None, **options):
+    """A slice through the table of `build -d`, at an angle ("15 deg") and a suction or turgor ("0.02 MPa"), for an accuracy;
+    field (stress, turgor): its records in strain space."""
+    return _draw("database", path, {"field": field, "angle": angle, "suction": suction, "turgor": turgor,
+                                    "accuracy": accuracy, **options})
+
+
+def map(path, field=None, **options):
+    """How the tissue of `map -o` fails, and a number of each point: load_factor, or a single number of its records."""
+    return _draw("map", path, {"field": field, **options})
+
+
+def tradeoff(path, **options):
+    """The work-precision diagram of a tradeoff.json that `tradeoff -o` has written."""
+    return _draw("tradeoff", path, options)
+
+
+def fields():
+    """Names of all fields of files of rve, fe2 and databases; maps have the single numbers of records, too."""
+    from .bodies import FIELDS as of_bodies
+    from .tissue import FIELDS as of_walls
+    return [*of_walls, *of_bodies, "stress", "load_factor"]
+
+
+def save(drawn, path, dpi=None, progress=None):
+    """Writes a Page, or several: pages of a PDF, or numbered files. progress(done): is called after each."""
+    from .film import save_all
+    check_path(path)
+    if isinstance(drawn, Page):
+        drawn.save(path, dpi)
+    else:
+        save_all(drawn, path, dpi, progress)

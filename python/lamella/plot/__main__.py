@@ -1,0 +1,56 @@
+"""What `lamella plot` runs: one argument, a JSON object with the file, the options of its picture, and where it goes."""
+import json
+import sys
+
+from .. import Error, InputError
+from . import draw, fields, save, tradeoff
+from .page import check_path
+
+INPUT, IO, FAULT = 2, 4, 70  # exit statuses (docs/reference/commands.md)
+
+
+def _progress(total):
+    """A line on the terminal that tells how many pages are written."""
+    if not sys.stderr.isatty():
+        return None
+    return lambda done: print(f"\r\033[K{done} of {total} pages" if done < total else "\r\033[K", end="", file=sys.stderr,
+                              flush=True)
+
+
+def run(request):
+    """Draws, writes, and tells what it has written."""
+    path, outputs = request.pop("input"), request.pop("outputs")
+    dpi, quiet, silent = (request.pop(name, None) for name in ("dpi", "quiet", "silent"))
+    for output in outputs:
+        check_path(output)
+    drawn = tradeoff(path, **request) if str(path).endswith(".json") else draw(path, **request)
+    for output in outputs:
+        save(drawn, output, dpi, None if quiet or not isinstance(drawn, list) else _progress(len(drawn)))
+        if not silent:
+            print(f"wrote {output}", flush=True)
+
+
+def main(argument):
+    """Exit status of a request."""
+    if argument == "fields":
+        print("\n".join(fields()))
+        return 0
+    try:
+        run(json.loads(argument))
+        return 0
+    except InputError as error:
+        status, message = INPUT, error
+    except OSError as error:
+        status, message = IO, error
+    except MemoryError:
+        status, message = FAULT, "out of memory"
+    except Error as error:
+        status, message = FAULT, error
+    except KeyboardInterrupt:
+        return 130
+    print(f"lamella: {message}", file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

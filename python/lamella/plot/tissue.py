@@ -1,0 +1,388 @@
+"""Cells in a picture: walls with a field, lumens, outlines, periodic images in paler colours; of tissue whose cells can
+come apart gaps, contact pressure and the lamella.
+
+Gaps are strips between two walls, coloured by their width; thinner ones than a line are drawn with a line's width, so
+that an open face never looks closed. Pressure is a ribbon along the face, widest at the largest pressure. The lamella
+is a line along the face, from black to white by the share of its energy that is spent; where it still holds across a
+gap that is seen, threads cross the gap.
+"""
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from matplotlib.patches import PathPatch, Polygon, Rectangle
+
+from .. import InputError
+from . import mesh as meshes
+from .page import DARK, DASHES, FIELD, GAPS, INK, LAMELLA, RED, ROW, SMALL, Range, bar, bar_width, number
+
+FIELDS = {"wall_stress": ("largest principal Cauchy stress", "MPa"), "fibre_stretch": ("fibre stretch", None)}
+LUMEN, PRESSURE = "#e6f1f7", "#f28700"
+FADE = 0.55  #: share of white in the periodic images
+VISIBLE_GAP = 1e-3  #: apothems
+MARGIN, CONTACT_MARGIN = 1.1, 0.5  #: apothems around cells: neighbours are seen; where cells part, gaps are seen larger
+SCALE_BAR = 52  #: points at most: half of the narrowest panel of a strip
+THINNEST_WALL = 1.5  #: points in which the colours of a wall are still told apart
+THINNEST_GAP, WIDEST_RIBBON, WIDEST_LAMELLA = 1.1, 5, 1.3  #: points
+CASING = 1.6  #: of the lamella's line: width of its dark outlines over its own
+THREAD, THREAD_DISTANCE, SHORTEST_THREAD = 0.7, 2.6, 1.5  #: points
+HOLDS = 0.999  #: a lamella less broken than this is drawn across gaps
+REACH = 12  #: periods to each side in which images are looked for: more than the margins need
+
+
+def field_of(name):
+    """Name, label and unit of a field of walls."""
+    if name is not None and name not in FIELDS:
+        raise InputError(f"--field {name}: a file of RVE states has {' and '.join(FIELDS)}")
+    name = name or next(iter(FIELDS))
+    label, unit = FIELDS[name]
+    return name, f"{label} ({unit})" if unit else label
+
+
+def _faded(colour, share):
+    return tuple(c + share * (1 - c) for c in to_rgb(colour))
+
+
+PALE = LinearSegmentedColormap.from_list("pale", [_faded(c, FADE) for c in FIELD(np.linspace(0, 1, 256))], N=256)
+
+
+class View:
+    """A window of the plane on the page: axes without ticks. scale: points per unit of length."""
+
+    def __init__(self, page, x, y, width, height, box):
+        low, high = np.asarray(box[0], float), np.asarray(box[1], float)
+        size = np.maximum(high - low, 1e-30)
+        self.page, self.frame = page, (x, y, width, height)
+        self.scale = min(width / size[0], height / size[1])
+        half = np.array([width, height]) / self.scale / 2
+        self.low, self.high = (low + high) / 2 - half, (low + high) / 2 + half
+        self.axes = page.area(x, y, width, height)
+        self.axes.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]), xticks=[], yticks=[])
+        self.axes.grid(False)
+
+    def shows(self, box, shift):
+        return bool(((box[1] + shift >= self.low) & (box[0] + shift <= self.high)).all())
+
+    def points(self, x):
+        """Places on the page, points, from the lower left corner of the view."""
+        return (x - self.low) * self.scale
+
+
+class Interface:
+    """Samples along the faces at one state (docs/reference/files.md): arrays [face, point, ...]."""
+
+    def __init__(self, source, group):
+        read = lambda name: source.array(f"{group}/interface/{name}")
+        self.start, self.to, self.gap, self.pressure = map(read, ("from", "to", "gap", "pressure"))
+        shape = self.gap.shape
+        if len(shape) != 2 or self.pressure.shape != shape or self.start.shape != shape + (2,) or \
+                self.to.shape != shape + (2,):
+            raise InputError(f"{source.path}: {group}/interface is damaged")
+        self.has_lamella = source.has(f"{group}/interface/broken")
+        if self.has_lamella:
+            self.across, self.broken = read("across"), read("broken")
+            if self.broken.shape != shape or self.across.shape != shape + (2,):
+                raise InputError(f"{source.path}: {group}/interface is damaged")
+        self.widest = float(np.nanmax(self.gap, initial=0))
+        self.largest_pressure = float(np.nanmax(self.pressure, initial=0))
+
+
+class Cells:
+    """The tissue of one state. mesh, fields: groups of the file; F [3, 3] of the state."""
+
+    def __init__(self, source, mesh, fields, field, parts, F):
+        self.F = F
+        self.nodes = source.points(f"{mesh}/nodes")
+        n = len(self.nodes)
+        elements = source.elements(f"{mesh}/elements")
+        self.period = source.array(f"{mesh}/period", 2, 2, finite=True)
+        cell = source.array(f"{mesh}/cell_of", len(elements), 1)
+        self.mesh = meshes.Mesh(elements, n, cell, f"{source.path}: {mesh}/elements")
+        self.x = source.points(f"{fields}/x", n)
+        self.values = source.array(f"{fields}/{field}", n, 1).astype(float).ravel()
+        self.interface = Interface(source, fields) if parts else None
+        self.outer = [loop for loop in self.mesh.loops if meshes.area(loop, self.nodes) >= 0]
+        self.lumens = [loop for loop in self.mesh.loops if meshes.area(loop, self.nodes) < 0]
+
+    @property
+    def is_periodic(self):
+        return bool(self.period.any())
+
+    @property
+    def box(self):
+        return self.x.min(axis=0), self.x.max(axis=0)
+
+    @property
+    def undeformed_shift(self):
+        """Shift of the reference for which both centroids coincide: translations have no meaning in periodic tissue."""
+        return (self.x - self.nodes).mean(axis=0)
+
+    def images(self, view):
+        """Shifts of the images that are seen, the RVE itself last, so that it lies on top."""
+        reach = REACH if self.is_periodic else 0
+        steps = [(i, j) for i in range(-reach, reach + 1) for j in range(-reach, reach + 1) if i or j]
+        shifts = [self.F[:2, :2] @ (i * self.period[0] + j * self.period[1]) for i, j in steps]
+        return [shift for shift in shifts if view.shows(self.box, shift)] + [np.zeros(2)]
+
+    def thickness(self):
+        """Mean thickness of each cell's wall: its area over the length of its outer loop."""
+        hole = {}
+        for loop in self.lumens:
+            group = self.mesh.groups[loop[0, 3]]
+            hole[group] = hole.get(group, 0) + meshes.area(loop, self.x)
+        length = lambda loop: np.linalg.norm(self.x[loop[:, 2]] - self.x[loop[:, 0]], axis=1).sum()
+        return np.array([(meshes.area(loop, self.x) + hole.get(self.mesh.groups[loop[0, 3]], 0)) /
+                         max(length(loop), 1e-30) for loop in self.outer])
+
+
+def _shifted(path, shift):
+    return type(path)(path.vertices + shift, path.codes) if len(path.vertices) else path
+
+
+def draw(view, cells, norm, gaps, pressure, undeformed=True):
+    """Lumens, walls with their field, outlines; interfaces by the scales `gaps` and `pressure`, which states share."""
+    axes, images = view.axes, cells.images(view)
+    thickness = cells.thickness() * view.scale
+    thin = thickness.min(initial=np.inf) < THINNEST_WALL  # lumens' outlines would be in the middle of the wall
+    line = 0.25 * max(thickness.min(initial=np.inf), THINNEST_WALL)
+    lumens, outer = meshes.paths(cells.lumens, cells.x), meshes.paths(cells.outer, cells.x)
+    parts = [(shift, 0 if k == len(images) - 1 else FADE) for k, shift in enumerate(images)]
+    order = 1.0
+    for shift, fade in parts:
+        axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor=_faded(LUMEN, fade), edgecolor="none", zorder=1))
+    points, triangles, values = meshes.field(cells.mesh, cells.x, cells.values, view.scale, len(images))
+    for shift, fade in parts:
+        order += 0.001
+        painted = meshes.paint(axes, points + shift, triangles, values, norm, PALE if fade else FIELD)
+        painted.set_zorder(order)
+    for shift, fade in parts:
+        ink = _faded(DARK, 0.8 * fade)
+        if thin:
+            _widen(axes, cells, thickness, norm, shift, PALE if fade else FIELD)
+        else:
+            axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor="none", edgecolor=ink, linewidth=min(0.4, line / 2),
+                                     zorder=2))
+        axes.add_artist(PathPatch(_shifted(outer, shift), facecolor="none", edgecolor=ink, zorder=2.1,
+                                 linewidth=min(line, 0.5 if fade else 0.9)))
+    if undeformed:
+        outline = meshes.path(_border(cells), cells.nodes + cells.undeformed_shift)
+        axes.add_artist(PathPatch(outline, facecolor="none", edgecolor=RED, linewidth=0.9, linestyle=DASHES, zorder=3))
+    if cells.interface:
+        for shift, _ in parts:
+            _interface(view, cells.interface, shift, min(WIDEST_LAMELLA, 1.6 * line), gaps, pressure)
+
+
+def _border(cells):
+    """Edges of the undeformed RVE as a whole: outer walls on which no other cell's lies."""
+    edges = np.vstack(cells.outer)
+    middle = np.round(cells.nodes[edges[:, 1]], 6)
+    _, where, count = np.unique(middle, axis=0, return_inverse=True, return_counts=True)
+    return edges[count[np.ravel(where)] == 1]
+
+
+def _widen(axes, cells, thickness, norm, shift, cmap):
+    """Walls that would be too thin to be seen, as wide as the thinnest that is, inwards, by means of their elements."""
+    n = np.where(cells.mesh.triangle, 6, 9)
+    nodes = np.where(cells.mesh.elements < 0, 0, cells.mesh.elements)
+    used = np.arange(9) < n[:, None]
+    mean = (cells.values[nodes] * used).sum(axis=1) / n
+    for loop, width in zip(cells.outer, thickness):
+        if width >= THINNEST_WALL:
+            continue
+        edges = [_curve(edge, cells.x + shift) for edge in loop]
+        lines = LineCollection(edges, colors=cmap(norm(mean[loop[:, 3]])), linewidths=2 * THINNEST_WALL, capstyle="round",
+                               zorder=1.9)
+        axes.add_artist(lines)
+        lines.set_clip_path(PathPatch(meshes.path(loop, cells.x + shift, closed=True), transform=axes.transData))
+
+
+def _curve(edge, x):
+    """Points along a quadratic edge."""
+    t = np.linspace(0, 1, 5)[:, None]
+    a, m, b = x[edge[0]], x[edge[1]], x[edge[2]]
+    return (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * m + t * (2 * t - 1) * b
+
+
+# ---- interfaces ----
+
+def _interface(view, i, shift, width, gaps, pressure):
+    if pressure > 0:
+        _ribbons(view, i, shift, CASING * width if i.has_lamella else 0, pressure)
+    if i.has_lamella:
+        _lamella(view, i, shift, width)
+    _gaps(view, i, shift, gaps)
+    if i.has_lamella:
+        _threads(view, i, shift)
+
+
+def _ribbons(view, i, shift, line, pressure):
+    """Along one edge of the ribbon and back along the other; as much wider than zero as the lamella's line."""
+    x = i.start + shift
+    along = np.empty_like(x)
+    along[:, 1:-1] = x[:, 2:] - x[:, :-2]
+    along[:, 0], along[:, -1] = x[:, 1] - x[:, 0], x[:, -1] - x[:, -2]
+    along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-30)
+    normal = np.stack([-along[..., 1], along[..., 0]], axis=2)
+    half = 0.5 * (np.where(i.pressure > 0, line, 0) + WIDEST_RIBBON * i.pressure / pressure) / view.scale
+    edges = np.concatenate([x + normal * half[..., None], (x - normal * half[..., None])[:, ::-1]], axis=1)
+    pressed = (i.pressure > 0).any(axis=1)
+    view.axes.add_artist(PolyCollection(edges[pressed], facecolors=PRESSURE, edgecolors="none", zorder=4))
+
+
+def _gaps(view, i, shift, gaps):
+    with np.errstate(invalid="ignore"):
+        open_ = i.gap[:, :-1] + i.gap[:, 1:] > 2 * VISIBLE_GAP  # false also where a sample faces no wall
+    strips = np.stack([i.start[:, :-1], i.start[:, 1:], i.to[:, 1:], i.to[:, :-1]], axis=2)[open_] + shift
+    colours = GAPS(gaps(0.5 * (i.gap[:, :-1] + i.gap[:, 1:])[open_]))
+    view.axes.add_artist(PolyCollection(strips, facecolors=colours, edgecolors=colours, linewidths=THINNEST_GAP,
+                                            joinstyle="round", zorder=6))
+
+
+def _stretch(view, i):
+    """Points on the page between the sides of the lamella at each sample; 0: it lies between walls that are not apart."""
+    with np.errstate(invalid="ignore"):
+        return np.where(i.gap > VISIBLE_GAP, np.linalg.norm(i.across - i.start, axis=2) * view.scale, 0)
+
+
+def _lamella(view, i, shift, width):
+    """The line along the faces; nothing where the gap shows that it is broken, or threads are drawn."""
+    stretch, broken = _stretch(view, i), 0.5 * (i.broken[:, 1:] + i.broken[:, :-1])
+    longest = np.maximum(stretch[:, 1:], stretch[:, :-1])
+    drawn = ~((longest >= SHORTEST_THREAD) | ((longest > 0) & (broken > HOLDS)))
+    pieces = np.stack([i.start[:, :-1], i.start[:, 1:]], axis=2)[drawn] + shift
+    for colours, wide in ((DARK, CASING * width), (LAMELLA(broken[drawn]), width)):
+        view.axes.add_artist(LineCollection(pieces, colors=colours, linewidths=wide, capstyle="round", zorder=5))
+
+
+def _threads(view, i, shift):
+    """Across the gaps, as far apart as they are told apart."""
+    stretch, lines, colours = _stretch(view, i), [], []
+    at = view.points(i.start)
+    for face in range(len(i.gap)):
+        last = None
+        for k in np.flatnonzero((stretch[face] >= SHORTEST_THREAD) & (i.broken[face] <= HOLDS)):
+            if last is not None and np.hypot(*(at[face, k] - last)) < THREAD_DISTANCE:
+                continue
+            last = at[face, k]
+            lines.append(np.stack([i.start[face, k], i.across[face, k]]) + shift)
+            colours.append(LAMELLA(i.broken[face, k]))
+    view.axes.add_artist(LineCollection(lines, colors=colours, linewidths=THREAD, zorder=7))
+
+
+# ---- below a view ----
+
+class Key:
+    """A row of samples and texts on the page, from x to the right; y: its middle."""
+
+    def __init__(self, page, x, y, right):
+        self.page, self.left, self.x, self.y, self.right = page, x, x, y, right
+        self.axes = page.area(0, 0, *page.size, facecolor="none")
+        self.axes.set(xlim=(0, page.size[0]), ylim=(page.size[1], 0))
+        self.axes.set_axis_off()
+
+    def text(self, words, room=None, align="left"):
+        """Smaller where it would be longer than its room."""
+        at = self.right if align == "right" else self.x
+        text = self.axes.text(at, self.y, words, ha=align, va="center_baseline", size=SMALL, color=INK)
+        wide, room = self.width(text), self.right - self.x if room is None else room
+        if wide > room > 0:
+            text.set_size(SMALL * room / wide)
+        return min(wide, max(room, 0))
+
+    def width(self, text):
+        return text.get_window_extent().width * 72 / self.page.dpi
+
+    def row(self):
+        self.x, self.y = self.left, self.y + ROW
+
+    def scale_bar(self, points, unit):
+        """A bar of a round length, at most SCALE_BAR wide; points: those of one unit."""
+        longest = SCALE_BAR / points
+        power = 10.0 ** np.floor(np.log10(longest))
+        length = power * (5 if longest >= 5 * power else 2 if longest >= 2 * power else 1)
+        self.axes.plot([self.x, self.x + length * points], [self.y, self.y], color=INK, linewidth=2, solid_capstyle="butt")
+        self.x += length * points + 4
+        self.x += self.text(f"{length:g} {unit}") + 10
+
+    def undeformed(self, label):
+        """At the right end of the row."""
+        wide = self.text(label, self.right - self.x - 23, "right")
+        self.axes.plot([self.right - wide - 23, self.right - wide - 4], [self.y, self.y], color=RED, linewidth=0.9,
+                       linestyle=DASHES)
+
+    def interface(self, pressure, is_open, has_lamella):
+        """Ribbons and lamella; that of the lamella is in a row of its own where it has no room."""
+        words = "no contact"
+        if pressure > 0:
+            self.axes.add_patch(Polygon([(self.x, self.y), (self.x + 19, self.y - WIDEST_RIBBON / 2),
+                                         (self.x + 19, self.y + WIDEST_RIBBON / 2)], color=PRESSURE, linewidth=0))
+            more = "" if is_open or has_lamella else ";  no gap above 0.001 apothems"
+            words = f"contact pressure, up to {number(pressure)} MPa{more}"
+            self.x += 23
+        self.x += self.text(words) + 12
+        if has_lamella:
+            self._lamella()
+
+    def _lamella(self):
+        length, height = 42, 3.6
+        if self.x + 58 + 42 + 30 > self.right:
+            self.row()
+        self.x += self.text("lamella: intact") + 4
+        shades = Rectangle((self.x, self.y - height / 2), length, height, facecolor="none", edgecolor=DARK, linewidth=0.4)
+        self.axes.imshow([np.linspace(0, 1, 64)], cmap=LAMELLA, norm=Normalize(0, 1), aspect="auto", zorder=1,
+                         extent=(self.x, self.x + length, self.y + height / 2, self.y - height / 2))
+        self.axes.add_patch(shades)
+        self.axes.set(xlim=(0, self.page.size[0]), ylim=(self.page.size[1], 0))
+        self.x += length + 4
+        self.text("broken")
+
+
+# ---- a window that states share ----
+
+class Frame:
+    """Window, colours and scales of one state or several: norm of the field, gaps and pressure of the interfaces."""
+
+    def __init__(self, several, label, options, reference=False):
+        boxes = [c.box for c in several]
+        if reference:
+            boxes += [((c.nodes + c.undeformed_shift).min(axis=0), (c.nodes + c.undeformed_shift).max(axis=0))
+                      for c in several]
+        faces = [c.interface for c in several if c.interface]
+        margin = CONTACT_MARGIN if faces else MARGIN
+        self.box = np.min([b[0] for b in boxes], axis=0) - margin, np.max([b[1] for b in boxes], axis=0) + margin
+        self.label = label
+        ranges = [Range(c.values) for c in several]
+        self.norm = Range(np.concatenate([c.values for c in several]) if len(several) == 1 else
+                          np.array([(r.vmin, r.vmax) for r in ranges]), options)
+        widest = max((i.widest for i in faces), default=0)
+        self.is_open = widest > VISIBLE_GAP
+        self.gaps = Range([], {"range": (0, max(widest, VISIBLE_GAP))})
+        self.pressure = max((i.largest_pressure for i in faces), default=0)
+        self.has_lamella = any(i.has_lamella for i in faces)
+        self.parts, self.is_periodic = bool(faces), any(c.is_periodic for c in several)
+
+    @property
+    def bars(self):
+        """Points that the colour bars take."""
+        return bar_width(self.norm) + (bar_width(self.gaps) if self.is_open else 0)
+
+    def draw_bars(self, page, x, y, height):
+        bar(page, x, y, height, self.norm, self.label)
+        if self.is_open:
+            bar(page, x + bar_width(self.norm), y, height, self.gaps, "gap (apothems)", GAPS)
+
+    def draw(self, view, cells, undeformed=False):
+        draw(view, cells, self.norm, self.gaps, self.pressure, undeformed)
+
+    def key(self, page, view, um, right, undeformed=True):
+        """Scale bar and legend below the view; um: micrometres of an apothem."""
+        x, y, _, height = view.frame
+        key = Key(page, x, y + height + 11, right)
+        key.scale_bar(view.scale / um, "µm")
+        paler = "paler: periodic images" if self.is_periodic else ""
+        if undeformed:
+            key.undeformed(f"undeformed;  {paler}" if paler else "undeformed")
+        elif paler:
+            key.text(paler, align="right")
+        if self.parts:
+            key.row()
+            key.interface(self.pressure, self.is_open, self.has_lamella)

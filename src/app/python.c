@@ -1,0 +1,120 @@
+/*
+  Pictures are drawn by the Python package (python/lamella/plot), in a process of its own.
+*/
+#define _GNU_SOURCE /* environ */
+#include "app.h"
+#include <errno.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Debian's, which has Debian's packages; others are named by LAMELLA_PYTHON. */
+#define PYTHON "/usr/bin/python3"
+
+/* A package that is missing is found when it is imported, here or where a file is opened. */
+static const char Program[] =
+    "import sys\n"
+    "try:\n"
+    "    from lamella.plot.__main__ import main\n"
+    "    sys.exit(main(sys.argv[1]))\n"
+    "except ModuleNotFoundError as error:\n"
+    "    print(f'lamella: pictures need the Python package {error.name} '\n"
+    "          f'(Debian: python3-{error.name})', file=sys.stderr)\n"
+    "except ImportError as error:\n"
+    "    print(f'lamella: pictures need the Python package lamella: {error}', file=sys.stderr)\n"
+    "sys.exit(4)\n";
+
+/* The folder of the program, without a slash behind it; "" if it is not known. */
+static void ProgramFolder(char folder[PETSC_MAX_PATH_LEN])
+{
+  const ssize_t length = readlink("/proc/self/exe", folder, PETSC_MAX_PATH_LEN - 1);
+  char *slash;
+
+  folder[length > 0 ? length : 0] = '\0';
+  slash = strrchr(folder, '/');
+  if (slash) *slash = '\0';
+}
+
+/* Sets a variable unless the user has, to the first of these folders that has the file. */
+static void SetFolder(const char variable[], const char program[], const char *const folders[], const char file[])
+{
+  char path[PETSC_MAX_PATH_LEN + 64];
+
+  for (int i = 0; folders[i] && !getenv(variable); i++) {
+    snprintf(path, sizeof(path), "%s/%s/%s", program, folders[i], file);
+    if (access(path, R_OK)) continue;
+    path[strlen(path) - strlen(file) - 1] = '\0';
+    setenv(variable, path, 1);
+  }
+}
+
+/* Where the package is: beside the program, or where it is installed with it. An installed one has its library inside.
+ */
+static void FindPackage(void)
+{
+  static const char *const packages[] = {"python", "../share/lamella/python", NULL}, *const libraries[] = {".", NULL};
+  char folder[PETSC_MAX_PATH_LEN];
+
+  ProgramFolder(folder);
+  SetFolder("LAMELLA_LIBRARY", folder, libraries, "liblamella.so");
+  SetFolder("PYTHONPATH", folder, packages, "lamella/plot/__main__.py");
+}
+
+/* The child is no rank of this job. */
+static PetscBool IsOfLauncher(const char variable[])
+{
+  static const char *const heads[] = {"OMPI_COMM_", "OMPI_UNIVERSE", "PMIX_", "PMI_"};
+
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(heads); i++)
+    if (!strncmp(variable, heads[i], strlen(heads[i]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode Environment(char ***environment)
+{
+  size_t count = 0, n = 0;
+
+  PetscFunctionBeginUser;
+  while (environ[count]) count++;
+  PetscCall(PetscMalloc1(count + 1, environment));
+  for (size_t i = 0; i < count; i++)
+    if (!IsOfLauncher(environ[i])) (*environment)[n++] = environ[i];
+  (*environment)[n] = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Exit status of the child, which has said what is wrong. */
+static int Await(pid_t child)
+{
+  int status;
+
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return LAM_EXIT_FAULT;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+PetscErrorCode LamPythonDraw(json_t *request, int *exit_status)
+{
+  const char *named = getenv("LAMELLA_PYTHON"), *python = named && *named ? named : PYTHON;
+  char *text = json_dumps(request, 0), **environment;
+  char *const argv[] = {(char *)python, "-c", (char *)Program, text, NULL};
+  pid_t child;
+  int failed;
+
+  PetscFunctionBeginUser;
+  json_decref(request);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "an argument is not in UTF-8");
+  FindPackage();
+  PetscCall(Environment(&environment));
+  fflush(stdout);
+  failed = posix_spawnp(&child, python, NULL, NULL, argv, environment);
+  free(text);
+  PetscCall(PetscFree(environment));
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "pictures need Python 3 with the package matplotlib (Debian: python3-matplotlib): %s: %s; LAMELLA_PYTHON "
+             "names another one",
+             python, strerror(failed));
+  *exit_status = Await(child);
+  PetscFunctionReturn(0);
+}
