@@ -2,10 +2,10 @@
   FE2 against a direct patch of n x n cells between grips (fe2_patch.h): curves of stress and opening as n
   grows, and of FE2 as its mesh gets finer; prints figures, asserts nothing.
 
-    bench_fe2_patch [--full] [--csv TABLE]
+    bench_fe2_patch [--full] [--table TABLE]
       --full   also blocks of 16 x 16 cells, and finer meshes of FE2 (6 minutes of processor time);
                without it one minute
-      --csv    writes the curves, which fe2_patch_figure.py draws
+      --table  writes the curves, which fe2_patch_figure.py draws
 */
 #include "options.h"
 #include "support/fe2_patch.h"
@@ -112,7 +112,7 @@ static void WriteCurve(FILE *out, const ScalesCase *c, const char name[], const 
   for (int s = 0; s < curve->steps; s++) {
     const double share = (s + 1.0) / STEPS, load = c->shear != 0 ? share * c->shear : 1 + share * c->stretch;
 
-    fprintf(out, "%s,%s,%d,%.9g,%.9g,%.9g\n", c->name, name, c->shear != 0 ? 12 : 22, load, curve->stress[s],
+    fprintf(out, "%s\t%s\t%d\t%.9g\t%.9g\t%.9g\n", c->name, name, c->shear != 0 ? 12 : 22, load, curve->stress[s],
             curve->opening[s]);
   }
 }
@@ -124,7 +124,7 @@ static PetscErrorCode WriteCurves(const char path[], const Study studies[])
 
   PetscFunctionBeginUser;
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s", path);
-  fprintf(out, "case,curve,component,load,stress,opening\n");
+  fprintf(out, "case\tcurve\tcomponent\tload\tstress\topening\n");
   for (int i = 0; i < SCALES_CASES; i++) {
     for (int k = 0; k < studies[i].block_count; k++) {
       snprintf(name, sizeof(name), "%d", blocks[k]);
@@ -159,7 +159,7 @@ int main(int argc, char **argv)
   PetscBool writes;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
-  if (PetscOptionsGetString(NULL, NULL, "--csv", table, sizeof(table), &writes)) return 1;
+  if (PetscOptionsGetString(NULL, NULL, "--table", table, sizeof(table), &writes)) return 1;
   if (Run(HasOption("--full"), writes ? table : NULL)) return 1;
   return EndBench();
 }

@@ -1,4 +1,4 @@
-"""Draws the curves of bench_fe2_patch: fe2_patch_figure.py TABLE.csv FIGURE.png|.svg|.pdf"""
+"""Draws the curves of bench_fe2_patch: fe2_patch_figure.py TABLE FIGURE.png|.svg|.pdf"""
 import sys
 from pathlib import Path
 
@@ -34,7 +34,7 @@ def draw(table):
         axes.plot(rows["load"], rows[UNITS[quantity]], "o-", color="black", label="FE²")
         axes.set(xlabel=f"{'shear' if component == 12 else 'stretch'} $F_{{{component}}}$",
                  ylabel=QUANTITIES[quantity].format(component),)
-        axes.text(1, 0.02, case, transform=axes.transAxes, ha="right")
+        axes.text(0.98, 0.03, case, transform=axes.transAxes, ha="right")
         legend(page, axes)
     for k, name in enumerate(UNITS):
         axes = page.chart(9 + k * wide, 2 * high + 30, wide - 18, high + 24)
@@ -53,4 +53,4 @@ def draw(table):
 
 
 if __name__ == "__main__":
-    draw(np.genfromtxt(sys.argv[1], delimiter=",", names=True, dtype=None, encoding="utf-8")).save(sys.argv[2])
+    draw(np.genfromtxt(sys.argv[1], delimiter="\t", names=True, dtype=None, encoding="utf-8")).save(sys.argv[2])

@@ -40,7 +40,7 @@ STYLE = {
     "ytick.major.size": 2.5, "xtick.minor.size": 1.25, "ytick.minor.size": 1.25, "xtick.minor.width": 0.4,
     "ytick.minor.width": 0.4, "xtick.major.pad": 3, "ytick.major.pad": 3, "axes.labelpad": 3,
     "axes.grid": True, "axes.axisbelow": True, "grid.color": "#dedede", "grid.linewidth": 0.4,
-    "axes.unicode_minus": True, "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-3, 4),
+    "axes.unicode_minus": True, "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-4, 5),
     "axes.xmargin": 0.06, "axes.ymargin": 0.06, "lines.linewidth": 1.0, "lines.markersize": 3.4,
     "lines.markeredgewidth": 0.8, "legend.frameon": False, "legend.handlelength": 2.0, "legend.handletextpad": 0.5,
     "legend.columnspacing": 1.2, "legend.borderaxespad": 0.2, "legend.borderpad": 0.2, "legend.labelspacing": 0.4,
@@ -231,9 +231,13 @@ def _legend(axes, handles, options):
 
 def columns(labels, width, size=SMALL, sample=2.0):
     """Of a legend that fits into this width, points."""
-    each = [size * (0.56 * len(label.replace("$", "").replace("_{", "").replace("}", "")) + sample + 1.7)
+    each = [size * (0.54 * len(label.replace("$", "").replace("_{", "").replace("}", "")) + sample + 1.7)
             for label in labels]
-    return len(labels) if sum(each) <= width else int(np.clip(width / max(each), 1, len(labels)))
+    for count in range(len(each), 1, -1):  # filled column by column
+        rows = -(-len(each) // count)
+        if sum(max(each[k:k + rows]) for k in range(0, len(each), rows)) <= width:
+            return count
+    return 1
 
 
 def limits(axes, options):
@@ -270,6 +274,7 @@ def _fit(page, axes, x, y, width, height):
         for axis, points in ((axes.xaxis, axes.bbox.width / 26), (axes.yaxis, axes.bbox.height / 20)):
             if isinstance(axis.get_major_locator(), ticker.MaxNLocator):
                 axis.get_major_locator().set_params(nbins=max(2, int(points * 72 / page.dpi)))
+        axes.yaxis.get_offset_text().set(x=-0.02, ha="right")  # not below the legend
         if axes in page.chart_legends:
             _legend(axes, *page.chart_legends[axes])
         whole, frame = axes.get_tightbbox(page.canvas.get_renderer()).get_points(), axes.get_window_extent().get_points()
