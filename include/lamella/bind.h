@@ -39,6 +39,9 @@ LAM_EXPORT int LamBindSceneRead(const char *path, const char *text, LamBindScene
 LAM_EXPORT void LamBindSceneScales(LamBindScene scene, double scales[2]);
 /* Number of the states of block `load`, and their loads, if `loads` is not NULL. */
 LAM_EXPORT int LamBindSceneLoads(LamBindScene scene, double loads[]);
+/* Its tissue as the material of another program: the cohesion, Pa. An error for a patch, which is no material point, and
+   for sealed cells, whose turgor is not prescribed. */
+LAM_EXPORT int LamBindSceneMaterial(LamBindScene scene, double *cohesion);
 LAM_EXPORT void LamBindSceneDestroy(LamBindScene scene);
 
 typedef struct LamBindRVE_s *LamBindRVE;
@@ -55,8 +58,11 @@ LAM_EXPORT int LamBindRVEReset(LamBindRVE rve);
 LAM_EXPORT void LamBindRVEDestroy(LamBindRVE rve);
 
 typedef struct LamBindDatabase_s *LamBindDatabase;
+/* An error for files of a patch, of sealed cells, and of tissue that has a history. */
 LAM_EXPORT int LamBindDatabaseOpen(const char *path, LamBindDatabase *database);
 LAM_EXPORT void LamBindDatabaseScales(LamBindDatabase database, double scales[2]);
+/* Its tissue as the material of another program, as LamBindSceneMaterial. */
+LAM_EXPORT void LamBindDatabaseMaterial(LamBindDatabase database, double *cohesion);
 /* Answers n loads; may be called by several threads at a time. accuracy: largest estimated relative error of P. */
 LAM_EXPORT int LamBindDatabaseQuery(LamBindDatabase database, int n, const double loads[], double accuracy,
                                     void *responses);

@@ -1,5 +1,5 @@
 /* Handles carry the units of their scene: loads and responses are converted here. */
-#include "study.h"
+#include "query_source.h"
 #include <lamella/bind.h>
 #include <lamella/error.h>
 #include <math.h>
@@ -17,6 +17,7 @@ static PetscErrorCode Start(void)
   }
   setenv("HWLOC_HIDE_ERRORS", "2", 0);
   PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* signals are the program's */
+  PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED;                   /* a host's threads may solve, one at a time */
   PetscCall(PetscInitializeNoArguments());
   PetscFunctionReturn(0);
 }
@@ -137,6 +138,26 @@ int LamBindSceneLoads(LamBindScene scene, double loads[])
   return (int)scene->scene->load_count;
 }
 
+static PetscErrorCode CheckMaterial(const LamScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!scene->micro.is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.patch: a patch between grips is a body of its own and no material point; take a period "
+             "(rve.cells)",
+             scene->path);
+  PetscCheck(!scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.turgor.mode: sealed: the turgor of sealed cells depends on their water, and the program that "
+             "takes this material prescribes it; write mode: prescribed",
+             scene->path);
+  PetscFunctionReturn(0);
+}
+
+int LamBindSceneMaterial(LamBindScene scene, double *cohesion)
+{
+  *cohesion = scene->scene->cohesion * scene->scene->scales.stress;
+  return (int)CheckMaterial(scene->scene);
+}
+
 void LamBindSceneDestroy(LamBindScene scene)
 {
   (void)LamSceneDestroy(&scene->scene);
@@ -218,25 +239,20 @@ void LamBindRVEDestroy(LamBindRVE rve)
 /* ---- databases ---- */
 
 struct LamBindDatabase_s {
-  LamDatabase database;
-  LamScales scales;
+  LamQuerySource source;
 };
 
 static PetscErrorCode OpenDatabase(const char *path, LamBindDatabase *out)
 {
-  LamMicrostructure micro;
-  LamDatabase database;
-  LamScales scales;
-  const char *hash;
+  LamQuerySource source;
   LamTable table;
 
   PetscFunctionBeginUser;
-  PetscCall(LamDatabaseOpen(path, &database));
-  PetscCall(LamDatabaseGetMicrostructure(database, &micro, &scales, &hash));
-  PetscCall(LamDatabaseGetTable(database, &table)); /* now: queries are then free of each other */
-  if (table) PetscCall(LamTableDestroy(&table));    /* the database keeps it */
+  PetscCall(LamQuerySourceOpen(path, &source));
+  PetscCall(LamDatabaseGetTable(source.database, &table)); /* now: queries are then free of each other */
+  if (table) PetscCall(LamTableDestroy(&table));           /* the database keeps it */
   PetscCall(PetscNew(out));
-  **out = (struct LamBindDatabase_s){.database = database, .scales = scales};
+  (*out)->source = source;
   PetscFunctionReturn(0);
 }
 
@@ -247,8 +263,13 @@ int LamBindDatabaseOpen(const char *path, LamBindDatabase *database)
 
 void LamBindDatabaseScales(LamBindDatabase database, double scales[2])
 {
-  scales[0] = database->scales.length;
-  scales[1] = database->scales.stress;
+  scales[0] = database->source.scales.length;
+  scales[1] = database->source.scales.stress;
+}
+
+void LamBindDatabaseMaterial(LamBindDatabase database, double *cohesion)
+{
+  *cohesion = database->source.cohesion * database->source.scales.stress;
 }
 
 static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], double accuracy,
@@ -256,10 +277,10 @@ static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], 
 {
   PetscFunctionBeginUser;
   for (int k = 0; k < n; k++) {
-    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->scales);
+    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->source.scales);
 
-    PetscCall(LamDatabaseQuery(bound->database, &load, accuracy, &responses[k]));
-    LamResponseScale(bound->scales.stress, &responses[k]);
+    PetscCall(LamDatabaseQuery(bound->source.database, &load, accuracy, &responses[k]));
+    LamResponseScale(bound->source.scales.stress, &responses[k]);
   }
   PetscFunctionReturn(0);
 }
@@ -285,6 +306,6 @@ int LamBindDatabaseLevels(LamBindDatabase database, int levels[])
 
 void LamBindDatabaseClose(LamBindDatabase database)
 {
-  (void)LamDatabaseClose(&database->database);
+  (void)LamQuerySourceClose(&database->source);
   (void)PetscFree(database);
 }
