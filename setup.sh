@@ -74,7 +74,7 @@ case "${1-run}" in
   deps) install_missing "${packages[@]}" "${test_packages[@]}" ;;
   run)
     install_missing "${packages[@]}" "${test_packages[@]}"
-    build release build --target lamella lamella_program lamella_shared
+    build release build --target lamella lamella_program lamella_shared lamella_umat
     main_job
     ;;
   test)
