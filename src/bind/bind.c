@@ -1,4 +1,5 @@
 /* Handles carry the units of their scene: loads and responses are converted here. */
+#include "mesh_choice.h"
 #include "query_source.h"
 #include <lamella/bind.h>
 #include <lamella/error.h>
@@ -172,12 +173,13 @@ struct LamBindRVE_s {
   LamScales scales;
 };
 
-static PetscErrorCode CreateRVE(const LamScene *scene, LamBindRVE *out)
+static PetscErrorCode CreateRVE(LamScene *scene, LamBindRVE *out)
 {
   LamRVEState state;
   LamRVE rve;
 
   PetscFunctionBeginUser;
+  PetscCall(LamChooseMesh(scene, NULL));
   PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &rve));
   PetscCall(LamRVEStateCreate(rve, &state));
   PetscCall(PetscNew(out));

@@ -3,6 +3,7 @@
 #include <lamella/bind.h>
 #include <lamella/error.h>
 #include <lamella/lamella.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,6 +104,52 @@ TEST_ON(a_state_without_an_answer_is_no_error, Bound, b, Enter(b), Leave(b))
   assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
   assert_int_not_equal(b->responses[0].status, LAM_CONVERGED);
   assert_true(b->responses[0].reason[0] != '\0');
+}
+
+/* The text above without its line of the mesh. */
+TEST(a_mesh_that_is_left_open_is_chosen)
+{
+  const char *mesh = strstr(Text, "  mesh:"), *rest = strstr(Text, "load:");
+  char open[sizeof(Text)];
+  LamBindScene scene;
+  LamResponse response;
+  double loads[STATES * LOAD];
+  LamBindRVE rve;
+
+  snprintf(open, sizeof(open), "%.*s%s", (int)(mesh - Text), Text, rest);
+  CHECK(LamBindSceneRead("test", open, &scene));
+  LamBindSceneLoads(scene, loads);
+  CHECK(LamBindRVECreate(scene, &rve));
+  CHECK(LamBindRVESolve(rve, 1, loads, 0, &response));
+  assert_int_equal(response.status, LAM_CONVERGED);
+  LamBindRVEDestroy(rve);
+  LamBindSceneDestroy(scene);
+}
+
+/* Another program prescribes turgor, and takes a material point. */
+TEST(sealed_cells_and_patches_are_no_material)
+{
+  static const char *const texts[] = {"version: 1\n"
+                                      "rve:\n"
+                                      "  cell: {apothem: 75 um, wall_thickness: 11.25 um}\n"
+                                      "  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}\n",
+                                      "  turgor: {mode: sealed, pressure: 0.02 MPa}\n",
+                                      "  patch: {columns: 2, rows: 2, sides: free}\n"};
+  static const char *const words[] = {"", "rve.turgor.mode: sealed", "rve.patch"};
+  double cohesion;
+
+  for (int k = 0; k < 3; k++) {
+    LamBindScene scene;
+    char text[1024];
+    int code;
+
+    snprintf(text, sizeof(text), "%s%s", texts[0], k ? texts[k] : "");
+    CHECK(LamBindSceneRead("test", text, &scene));
+    code = LamBindSceneMaterial(scene, &cohesion);
+    assert_int_equal(code != 0, k > 0);
+    if (k) assert_non_null(strstr(LamErrorMessage(), words[k]));
+    LamBindSceneDestroy(scene);
+  }
 }
 
 TEST(a_mistake_is_an_error_of_the_input)
