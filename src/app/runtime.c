@@ -113,6 +113,7 @@ static void ExpectNoRanks(void)
 {
   if (getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK")) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_orte_create_session_dirs", "false", 0); /* processes remove each other's as they end */
   setenv("OMPI_MCA_pml", "ob1", 0);
 }
 
