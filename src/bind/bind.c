@@ -306,8 +306,8 @@ int LamBindDatabaseLevels(LamBindDatabase database, int levels[])
   LamGrid grid = NULL;
   PetscInt n = 0;
 
-  (void)LamDatabaseGetRecords(database->database, &n, &records, &keys);
-  (void)LamDatabaseGetGrid(database->database, &grid);
+  (void)LamDatabaseGetRecords(database->source.database, &n, &records, &keys);
+  (void)LamDatabaseGetGrid(database->source.database, &grid);
   for (PetscInt i = 0; levels && i < n; i++)
     levels[i] = grid && LamKeyIsNode(keys[i]) ? (int)LamGridNodeLevel(grid, keys[i]) : -1;
   return (int)n;
