@@ -145,10 +145,13 @@ static void FindMembers(void)
 
 static void OpenScene(const char path[], Tissue t)
 {
+  double numbers[4];
   LamBindScene scene;
 
   Check(LamBindSceneRead(path, NULL, &scene));
-  Check(LamBindSceneMaterial(scene, &t->cohesion));
+  Check(LamBindSceneIsMaterial(scene));
+  LamBindSceneNumbers(scene, numbers);
+  t->cohesion = numbers[3];
   Check(LamBindRVECreate(scene, &t->rve));
   Check(LamBindRVEStateSize(t->rve, &t->state_size));
   LamBindSceneDestroy(scene);
@@ -157,6 +160,7 @@ static void OpenScene(const char path[], Tissue t)
 static Tissue Open(const char name[], int n, const double constants[])
 {
   Tissue t = Allocate(NULL, sizeof(*t));
+  double numbers[5];
   char path[PATH];
   int wanted;
 
@@ -178,7 +182,8 @@ static Tissue Open(const char name[], int n, const double constants[])
     t->accuracy = constants[1];
     if (!(t->accuracy > 0)) TissueFail("material %s: largest estimated error %g: above 0", name, t->accuracy);
     Check(LamBindDatabaseOpen(path, &t->database));
-    LamBindDatabaseMaterial(t->database, &t->cohesion);
+    LamBindDatabaseNumbers(t->database, numbers);
+    t->cohesion = numbers[3];
   }
   return Tissues = t;
 }

@@ -4,7 +4,11 @@ The functions are those of include/lamella/bind.h, which is read as it is.
 """
 import os
 import re
+import threading
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import cffi
 import numpy as np
@@ -14,7 +18,7 @@ _here = Path(__file__).resolve().parent
 _source = _here.parents[1]
 
 
-def _find(name, folders):
+def _find(name: str, folders: list[Path]) -> Path:
     for folder in folders:
         if (folder / name).is_file():
             return folder / name
@@ -22,10 +26,11 @@ def _find(name, folders):
                       "liblamella.so by the variable LAMELLA_LIBRARY")
 
 
-def _declarations():
+def _declarations() -> str:
     text = _find("bind.h", [_here, _source / "include" / "lamella"]).read_text()
     text = text[text.index("LAM_C_BEGIN") + len("LAM_C_BEGIN"):text.index("LAM_C_END")]
-    return re.sub(r"\bLAM_EXPORT\b", "", text) + "const char *LamErrorMessage(void); int LamErrorCode(void);"
+    return re.sub(r"\bLAM_EXPORT\b", "", text) + "const char *LamErrorMessage(void); int LamErrorCode(void); " \
+        "int PetscPopErrorHandler(void);"
 
 
 ffi.cdef(_declarations())
@@ -42,7 +47,7 @@ class InputError(Error, ValueError):
     """A mistake in a scene, a file or an argument; the message has file, line, column, key and remedy."""
 
 
-def check(code):
+def check(code: int) -> None:
     """Raises the error that a function of the library has returned."""
     if not code:
         return
@@ -51,13 +56,35 @@ def check(code):
     raise kinds.get(library.LamBindErrorKind(code), Error)(message)
 
 
-def start():
-    """Starts MPI and PETSc where the process has not: before the first scene or database, since files and pictures need
-    neither."""
+_one_at_a_time = threading.RLock()  # PETSc is not made for threads; again: memory is collected during a call
+
+
+@cache
+def _start() -> None:
+    """Starts MPI and PETSc where the process has not: before the first call, since files and pictures need neither."""
     check(library.LamBindStart())
 
 
-def _members():
+def call(function: Any, *arguments: Any) -> None:
+    """Calls a function that uses PETSc, one thread at a time, and raises its error."""
+    with _one_at_a_time:
+        _start()
+        check(library.LamBindStart())  # keeps errors, whatever petsc4py has set since
+        try:
+            check(function(*arguments))
+        finally:
+            library.PetscPopErrorHandler()
+
+
+def own(handle: Any, destroy: Any) -> Any:
+    """The handle, which is destroyed with the object that has it."""
+    def release(handle: Any) -> None:
+        with _one_at_a_time:
+            destroy(handle)
+    return ffi.gc(handle, release)
+
+
+def _members() -> Iterator[tuple[str, str, int, int, str, str]]:
     type_, count, offset = ffi.new("char *"), ffi.new("int *"), ffi.new("size_t *")
     unit, help_ = ffi.new("const char **"), ffi.new("const char **")
     for i in range(10000):
@@ -69,20 +96,21 @@ def _members():
 
 
 MEMBERS = list(_members())
+NAMES = [member[0] for member in MEMBERS]
 _shapes = {9: (3, 3), 81: (3, 3, 3, 3)}
 
 
-def _format(type_, count):
+def _format(type_: str, count: int) -> Any:
     if type_ == "s":
         return f"S{count}"
     one = "f8" if type_ == "f" else "i4"
     return one if count == 1 else (one, _shapes.get(count, (count,)))
 
 
-DTYPE = np.dtype({"names": [m[0] for m in MEMBERS], "formats": [_format(m[1], m[2]) for m in MEMBERS],
+DTYPE = np.dtype({"names": NAMES, "formats": [_format(m[1], m[2]) for m in MEMBERS],
                   "offsets": [m[3] for m in MEMBERS], "itemsize": library.LamBindResponseSize()})
 
 
-def name_of(member, value):
+def name_of(member: str, value: int) -> str:
     """Name of a value of an enumeration: "converged"."""
-    return ffi.string(library.LamBindMemberName(DTYPE.names.index(member), int(value))).decode()
+    return ffi.string(library.LamBindMemberName(NAMES.index(member), int(value))).decode()

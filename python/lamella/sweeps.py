@@ -1,18 +1,23 @@
-"""Sweeps of parameters: one scene, some of its keys varied, in processes of their own."""
+"""Many independent solves in processes of their own, so that processors are shared and a crash is an exception."""
 import itertools
 import json
 import os
+import pickle
 import subprocess
 import sys
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from . import RVE, InputError, Responses, Scene, scene_dict
-
+from . import RVE, InputError, Responses, Scene, rows_of, scene_dict
+from .program import SceneLike, environment
 
 MISTAKE = 2  # exit status of a worker whose scene is wrong
+Job = tuple[str, str | None, dict[str, Any]]  # path and text of a scene, arguments of RVE.solve
 
 
 class Sweep:
@@ -22,15 +27,15 @@ class Sweep:
     the members of Responses as attributes of the sweep, too.
     """
 
-    def __init__(self, values, responses):
+    def __init__(self, values: dict[str, Sequence[Any]], responses: Responses) -> None:
         self.names, self.values, self.responses = list(values), list(values.values()), responses
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Any:
         if name == "responses":
             raise AttributeError(name)
         return getattr(self.responses, name)
 
-    def table(self, *members):
+    def table(self, *members: str) -> list[dict[str, Any]]:
         """Rows of the sweep: a list of dictionaries with the keys, the state's number from 0 and members of the
         response; pandas.DataFrame takes it."""
         columns = {member: getattr(self.responses, member) for member in members}
@@ -43,7 +48,7 @@ class Sweep:
         return rows
 
 
-def _set(scene, key, value):
+def _set(scene: Any, key: str, value: Any) -> None:
     """Sets a key as "rve.turgor.pressure" or "load.0.F"; its blocks must exist, so that a wrong one is noticed."""
     *path, last = key.split(".")
     block = scene
@@ -57,55 +62,88 @@ def _set(scene, key, value):
     block[int(last) if isinstance(block, list) else last] = value
 
 
-def _solve_here(texts):
-    """What a worker does: responses of scenes along their own loads, one scene after the other, as bytes."""
-    scenes = [Scene("sweep", text=text) for text in texts]
-    return b"".join(RVE(s).solve(s.F, s.turgor, s.cohesion).array.tobytes() for s in scenes)
+def _solve_here(jobs: list[Job]) -> Iterator[np.ndarray]:
+    """What a worker does: responses of jobs, each from undeformed tissue. Jobs of one scene use one RVE."""
+    of, rve = None, None
+    for path, text, loads in jobs:
+        if rve is None or of != (path, text):
+            of, rve = (path, text), RVE(Scene(path, text))
+        rve.reset()
+        yield rve.solve(**loads).array
 
 
-def _solve_there(texts):
-    """The same in another process, so that processors are shared and a crash is an exception."""
+def _solve_there(jobs: list[Job]) -> list[np.ndarray]:
+    """The same in another process."""
     package = str(Path(__file__).resolve().parents[1])
     paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
-    done = subprocess.run([sys.executable, "-c", "from lamella import sweeps; sweeps.work()"], input=json.dumps(texts).encode(), capture_output=True,
-                          env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}, check=False)
+    done = subprocess.run([sys.executable, "-c", "from lamella import sweeps; sweeps.work()"],
+                          input=pickle.dumps(jobs), capture_output=True, check=False,
+                          env=environment(PYTHONPATH=os.pathsep.join(paths)))
     if done.returncode == MISTAKE:
         raise InputError(done.stderr.decode().strip())
     if done.returncode:
         raise RuntimeError(f"a worker has ended with status {done.returncode}: {done.stderr.decode().strip()}")
-    return np.frombuffer(done.stdout, Responses.dtype).reshape(len(texts), -1)
+    return pickle.loads(done.stdout)
 
 
-def sweep(scene, values, processes=None):
-    """Solves a scene along its block `load` for all combinations of values of its keys.
+def work() -> None:
+    """A worker: jobs on stdin, arrays of responses on stdout, both pickled by this package."""
+    try:
+        solved = list(_solve_here(pickle.load(sys.stdin.buffer)))
+    except InputError as error:
+        print(error, file=sys.stderr)
+        sys.exit(MISTAKE)
+    sys.stdout.buffer.write(pickle.dumps(solved))
+
+
+def _solve(jobs: list[Job], processes: int | None) -> np.ndarray:
+    """Responses of jobs [jobs, states], solved by so many processes at a time."""
+    processes = min(processes or len(os.sched_getaffinity(0)), len(jobs))
+    with ThreadPoolExecutor(processes) as pool:
+        parts = list(pool.map(_solve_there, [jobs[k::processes] for k in range(processes)]))
+    solved = [parts[k % processes][k // processes] for k in range(len(jobs))]
+    if len({len(states) for states in solved}) > 1:
+        raise InputError("the scenes have different numbers of states: "
+                         f"{', '.join(str(len(states)) for states in solved)}")
+    return np.stack(solved)
+
+
+def sweep(scene: str | os.PathLike[str] | dict[str, Any], values: dict[str, Sequence[Any]],
+          processes: int | None = None) -> Sweep:
+    """Solves a scene along its block `load`, as `lamella rve`, for all combinations of values of its keys.
 
     scene: path, dictionary or text of one; values: {"rve.turgor.pressure": ["0 MPa", "0.05 MPa"], ...}; processes: at a
     time, default the number of processors. Returns a Sweep. InputError names the key that a scene does not take.
     """
     base = scene_dict(scene)
-    texts = []
+    jobs: list[Job] = []
     for point in itertools.product(*values.values()):
         varied = json.loads(json.dumps(base))
         for key, value in zip(values, point):
             _set(varied, key, value)
-        texts.append(json.dumps(varied))
-    if not texts:
+        jobs.append(("sweep", json.dumps(varied), {}))
+    if not jobs:
         raise InputError("sweep: a key has no values")
-    processes = min(processes or len(os.sched_getaffinity(0)), len(texts))
-    chunks = [texts[k::processes] for k in range(processes)]
-    with ThreadPoolExecutor(processes) as pool:
-        solved = list(pool.map(_solve_there, chunks))
-    array = np.empty((len(texts), solved[0].shape[1]), Responses.dtype)
-    for k, part in enumerate(solved):
-        array[k::processes] = part
+    array = _solve(jobs, processes)
     return Sweep(values, Responses(array.reshape([len(v) for v in values.values()] + [-1])))
 
 
-def work():
-    """A worker: texts of scenes as JSON on stdin, the bytes of responses on stdout."""
-    try:
-        answer = _solve_here(json.load(sys.stdin))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        sys.exit(MISTAKE)
-    sys.stdout.buffer.write(answer)
+def solve(scene: SceneLike, F: ArrayLike, turgor: ArrayLike | None = None, cohesion: ArrayLike | None = None,
+          P: ArrayLike | None = None, processes: int | None = None, derivatives: bool = True) -> Responses:
+    """Solves many states of a scene that are independent of each other, each from undeformed tissue, or many paths.
+
+    F [states, 3, 3]: independent states; F [paths, states, 3, 3]: independent paths, whose states are solved in order.
+    The other arguments are those of RVE.solve, and broadcast with the states; processes: at a time, default the number
+    of processors. Returns Responses of the shape of the states.
+    """
+    scene = scene if isinstance(scene, Scene) else Scene(scene)
+    loads, stresses = rows_of(scene.pressures, F, turgor, cohesion, P)
+    if loads.ndim not in (2, 3):
+        raise InputError(f"solve: states of the shape {loads.shape[:-1]}: [states] or [paths, states]")
+    paths = loads.reshape(len(loads), -1, 11)
+    jobs: list[Job] = []
+    for k, path in enumerate(paths):
+        arguments = {"F": path[:, :9].reshape(-1, 3, 3), "turgor": path[:, 9], "cohesion": path[:, 10],
+                     "P": None if stresses is None else stresses[k].reshape(-1, 3, 3), "derivatives": derivatives}
+        jobs.append((scene.path, scene.text, arguments))
+    return Responses(_solve(jobs, processes).reshape(loads.shape[:-1]))

@@ -1,10 +1,12 @@
 /* Handles carry the units of their scene: loads and responses are converted here. */
-#include "mesh_choice.h"
+#include "plan.h"
 #include "query_source.h"
+#include "rve_run.h"
 #include <lamella/bind.h>
 #include <lamella/error.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define LOAD 11 /* numbers of a load: F, turgor, cohesion */
 
@@ -54,6 +56,20 @@ char LamBindErrorKind(int code)
   }
 }
 
+static PetscErrorCode ReadQuantity(const char *text, double *value)
+{
+  PetscFunctionBeginUser;
+  for (int d = 0; d < LAM_DIMENSION_COUNT; d++)
+    if (!LamQuantityParse(text, (LamDimension)d, value)) PetscFunctionReturn(0);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "\"%s\": not a number with a unit that scenes have, such as 0.02 MPa, 75 um, 4 degC, 0.1 /day", text);
+}
+
+int LamBindQuantity(const char *text, int dimension, double *value)
+{
+  return (int)(dimension < 0 ? ReadQuantity(text, value) : LamQuantityParse(text, (LamDimension)dimension, value));
+}
+
 /* ---- responses ---- */
 
 size_t LamBindResponseSize(void)
@@ -61,10 +77,30 @@ size_t LamBindResponseSize(void)
   return sizeof(LamResponse);
 }
 
+static int LengthPower(const LamMember *member)
+{
+  if (!member->unit) return 0;
+  return !strcmp(member->unit, "apothem") ? 1 : !strcmp(member->unit, "apothem^2") ? 2 : 0;
+}
+
+static void ToSI(const LamScales *scales, LamResponse *response)
+{
+  const PetscReal factors[] = {1, scales->length, scales->length * scales->length};
+
+  LamResponseScale(scales->stress, response);
+  for (const LamMember *m = LamResponseMembers; m->name; m++) {
+    const int power = LengthPower(m);
+    PetscReal *value = (PetscReal *)(void *)((char *)response + m->offset);
+
+    for (PetscInt i = 0; i < (PetscInt)m->count && power; i++) value[i] *= factors[power];
+  }
+}
+
 static const char *UnitOf(const LamMember *member)
 {
   if (member->stress_power == 1) return "Pa";
   if (member->stress_power == -1) return "1/Pa";
+  if (LengthPower(member)) return LengthPower(member) == 1 ? "m" : "m^2";
   return member->unit ? member->unit : "1";
 }
 
@@ -99,11 +135,6 @@ static LamLoad LoadOf(const double row[LOAD], const LamScales *scales)
   return load;
 }
 
-int LamBindQuantity(const char *text, int dimension, double *value)
-{
-  return (int)LamQuantityParse(text, (LamDimension)dimension, value);
-}
-
 /* ---- scenes ---- */
 
 struct LamBindScene_s {
@@ -126,24 +157,44 @@ int LamBindSceneRead(const char *path, const char *text, LamBindScene *scene)
   return (int)ReadScene(path, text, scene);
 }
 
-void LamBindSceneScales(LamBindScene scene, double scales[2])
-{
-  scales[0] = scene->scene->scales.length;
-  scales[1] = scene->scene->scales.stress;
-}
-
-int LamBindSceneLoads(LamBindScene scene, double loads[])
+void LamBindSceneNumbers(LamBindScene scene, double numbers[4])
 {
   const LamScales *scales = &scene->scene->scales;
 
-  for (PetscInt k = 0; k < scene->scene->load_count && loads; k++) {
-    const LamLoad *load = &scene->scene->loads[k];
+  numbers[0] = scales->length;
+  numbers[1] = scales->stress;
+  numbers[2] = scene->scene->turgor * scales->stress;
+  numbers[3] = scene->scene->cohesion * scales->stress;
+}
 
-    for (int i = 0; i < 9; i++) loads[LOAD * k + i] = load->F[i];
-    loads[LOAD * k + 9] = load->turgor * scales->stress;
-    loads[LOAD * k + 10] = load->cohesion * scales->stress;
+static void LoadToRow(const LamScene *scene, PetscInt k, double row[LOAD], double P[9])
+{
+  const LamStressControl *control = scene->controls ? &scene->controls[k] : NULL;
+  const LamLoad *load = &scene->loads[k];
+
+  for (int i = 0; i < 9; i++) {
+    const PetscBool given = (PetscBool)(control && control->given[i]);
+
+    row[i] = given || (control && control->follows[i]) ? NAN : load->F[i];
+    P[i] = given ? control->P[i] * scene->scales.stress : NAN;
   }
-  return (int)scene->scene->load_count;
+  row[9] = load->turgor * scene->scales.stress;
+  row[10] = load->cohesion * scene->scales.stress;
+}
+
+int LamBindSceneLoads(LamBindScene bound, double loads[], double P[])
+{
+  const LamScene *scene = bound->scene;
+
+  for (PetscInt k = 0; k < scene->load_count && loads; k++) LoadToRow(scene, k, &loads[LOAD * k], &P[9 * k]);
+  return (int)scene->load_count;
+}
+
+const char *LamBindSceneLoadsAreOpen(LamBindScene scene)
+{
+  if (scene->scene->inflate) return "F counts from the inflated tissue";
+  if (scene->scene->dissipating) return "the ramp follows what is dissipated";
+  return NULL;
 }
 
 static PetscErrorCode CheckMaterial(const LamScene *scene)
@@ -160,9 +211,8 @@ static PetscErrorCode CheckMaterial(const LamScene *scene)
   PetscFunctionReturn(0);
 }
 
-int LamBindSceneMaterial(LamBindScene scene, double *cohesion)
+int LamBindSceneIsMaterial(LamBindScene scene)
 {
-  *cohesion = scene->scene->cohesion * scene->scene->scales.stress;
   return (int)CheckMaterial(scene->scene);
 }
 
@@ -175,22 +225,71 @@ void LamBindSceneDestroy(LamBindScene scene)
 /* ---- RVE ---- */
 
 struct LamBindRVE_s {
-  LamRVE rve;
-  LamRVEState state;
-  LamScales scales;
+  LamScene *scene; /* with its mesh chosen; owned */
+  LamMeshes meshes;
 };
 
-static PetscErrorCode CreateRVE(LamScene *scene, LamBindRVE *out)
+static PetscErrorCode CopyScene(const LamScene *scene, LamScene **copy)
 {
-  LamRVEState state;
-  LamRVE rve;
+  return LamSceneReadText(scene->path, scene->text, copy);
+}
+
+static void DestroyRVE(LamBindRVE bound)
+{
+  (void)LamMeshesDestroy(&bound->meshes);
+  (void)LamSceneDestroy(&bound->scene);
+  (void)PetscFree(bound);
+}
+
+/* Undeformed tissue. Sealed cells have their water from there, or from the inflated tissue that the scene's loads find.
+ */
+static PetscErrorCode ResetRVE(LamBindRVE bound)
+{
+  const PetscReal unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const LamScene *scene = bound->scene;
+  LamLoad first = {.turgor = scene->turgor, .cohesion = scene->cohesion};
 
   PetscFunctionBeginUser;
-  PetscCall(LamChooseMesh(scene, NULL));
-  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, scene, &rve));
-  PetscCall(LamRVEStateCreate(rve, &state));
-  PetscCall(PetscNew(out));
-  **out = (struct LamBindRVE_s){.rve = rve, .state = state, .scales = scene->scales};
+  PetscCall(LamRVEStateReset(bound->meshes.rve[0], bound->meshes.state[0]));
+  PetscCall(PetscArraycpy(bound->meshes.F, unit, 9));
+  if (!scene->sealed) PetscFunctionReturn(0);
+  PetscCall(LamRVEUnseal(bound->meshes.rve[0]));
+  bound->meshes.unsealed = (LamResponse){.status = scene->inflate ? LAM_NOT_CONVERGED : LAM_CONVERGED};
+  if (scene->inflate) {
+    PetscCall(PetscStrncpy(bound->meshes.unsealed.reason,
+                           "cells are sealed in the inflated tissue: solve the scene's loads first",
+                           sizeof(bound->meshes.unsealed.reason)));
+    PetscFunctionReturn(0);
+  }
+  if (scene->load_count) first = scene->loads[0];
+  PetscCall(LamMeshesSeal(&bound->meshes, scene, &first));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SetUpRVE(LamBindRVE bound)
+{
+  LamPlan plan;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamPlanMake(bound->scene, &plan));
+  bound->scene->micro = plan.micro;
+  PetscCall(LamMeshesCreate(PETSC_COMM_SELF, bound->scene, 1, &bound->meshes));
+  PetscCall(ResetRVE(bound));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateRVE(const LamScene *scene, LamBindRVE *out)
+{
+  LamBindRVE bound;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&bound));
+  ierr = CopyScene(scene, &bound->scene);
+  if (!ierr) ierr = SetUpRVE(bound);
+  if (ierr) DestroyRVE(bound);
+  PetscCall(ierr);
+  *out = bound;
   PetscFunctionReturn(0);
 }
 
@@ -199,50 +298,160 @@ int LamBindRVECreate(LamBindScene scene, LamBindRVE *rve)
   return (int)CreateRVE(scene->scene, rve);
 }
 
-static PetscErrorCode SolveLoads(LamBindRVE bound, int n, const double loads[], int derivatives,
-                                 LamResponse responses[])
+/* P is given where F is not. P NULL: F alone. */
+static PetscErrorCode ControlOf(int state, const LamLoad *load, const double P[9], PetscReal stress,
+                                LamStressControl *control)
 {
-  PetscFunctionBeginUser;
-  PetscCall(LamRVESetWanted(bound->rve, derivatives ? LAM_WANT_ALL : LAM_WANT_ALL & ~LAM_WANT_DERIVATIVES));
-  for (int k = 0; k < n; k++) {
-    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->scales);
+  static const char *const names[] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
 
-    PetscCall(LamRVESolve(bound->rve, &load, bound->state, &responses[k]));
-    LamResponseScale(bound->scales.stress, &responses[k]);
+  PetscFunctionBeginUser;
+  *control = (LamStressControl){.share = 1};
+  for (int i = 0; i < 9 && P; i++) {
+    control->given[i] = (PetscBool)!isnan(P[i]);
+    PetscCheck(!control->given[i] || isnan(load->F[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "state %d: F%s and P%s are both given; write NaN for one of them", state, names[i], names[i]);
+    PetscCheck(control->given[i] || !isnan(load->F[i]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "state %d: F%s and P%s are both NaN; give one of them", state, names[i], names[i]);
+    if (control->given[i]) control->P[i] = P[i] / stress;
   }
   PetscFunctionReturn(0);
 }
 
-int LamBindRVESolve(LamBindRVE rve, int n, const double loads[], int derivatives, void *responses)
+/* Sealed cells find their pressure: a load has that at which they were sealed. */
+static PetscErrorCode CheckTurgor(const LamScene *scene, int state, const LamLoad *load)
 {
-  return (int)SolveLoads(rve, n, loads, derivatives, (LamResponse *)responses);
+  const PetscReal rounding = 10 * PETSC_MACHINE_EPSILON * fabs(scene->turgor); /* of the way to Pa and back */
+
+  PetscFunctionBeginUser;
+  PetscCheck(!scene->sealed || fabs(load->turgor - scene->turgor) <= rounding, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.turgor.mode: sealed: the cells find their pressure; state %d prescribes %g Pa, leave it out",
+             scene->path, state, (double)(load->turgor * scene->scales.stress));
+  PetscFunctionReturn(0);
+}
+
+static LamWanted Wanted(int derivatives)
+{
+  return (derivatives ? LAM_WANT_ALL : LAM_WANT_ALL & ~LAM_WANT_DERIVATIVES) | LAM_WANT_JUMPS;
+}
+
+static PetscErrorCode SolveLoads(LamBindRVE bound, LamRVEEstimate estimate, int n, const double loads[],
+                                 const double P[], LamResponse responses[])
+{
+  const PetscReal stress = bound->scene->scales.stress;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < n; k++) {
+    const LamLoad load = LoadOf(&loads[LOAD * k], &bound->scene->scales);
+    LamResponse solved[2];
+    LamStressControl control;
+
+    PetscCall(CheckTurgor(bound->scene, k, &load));
+    PetscCall(ControlOf(k, &load, P ? &P[9 * k] : NULL, stress, &control));
+    PetscCall(LamMeshesSolve(&bound->meshes, &load, &control, solved));
+    if (estimate) PetscCall(LamRVEEstimateError(estimate, bound->meshes.state[0], &solved[0]));
+    responses[k] = solved[0];
+    ToSI(&bound->scene->scales, &responses[k]);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Solve(LamBindRVE bound, int n, const double loads[], const double P[], int derivatives,
+                            int estimate, LamResponse responses[])
+{
+  LamRVEEstimate made = NULL;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCheck(
+      !estimate || bound->scene->micro.interface != LAM_INTERFACE_LAMELLA, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: rve.interface.law: lamella: the error is estimated along the scene's own loads alone, whose history is "
+      "known",
+      bound->scene->path);
+  PetscCall(LamMeshesSetWanted(&bound->meshes, Wanted(derivatives)));
+  if (estimate) PetscCall(LamRVEEstimateCreate(bound->meshes.rve[0], &made));
+  ierr = SolveLoads(bound, made, n, loads, P, responses);
+  PetscCall(LamRVEEstimateDestroy(&made));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+int LamBindRVESolve(LamBindRVE rve, int n, const double loads[], const double P[], int derivatives, int estimate,
+                    void *responses)
+{
+  return (int)Solve(rve, n, loads, P, derivatives, estimate, (LamResponse *)responses);
+}
+
+/* The states of a run as `lamella rve` makes it, which borrows the meshes. */
+static PetscErrorCode RunStates(LamRVERun *run, LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  while (run->solved < run->scene->load_count) {
+    LamResponse solved[2];
+
+    PetscCall(LamRVERunNext(run, solved));
+    responses[run->solved - 1] = solved[0];
+    ToSI(&run->scene->scales, &responses[run->solved - 1]);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveOwnLoads(LamBindRVE bound, int derivatives, int estimate, LamResponse responses[],
+                                    int *count)
+{
+  LamRVERun run = {0};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResetRVE(bound));
+  PetscCall(LamMeshesSetWanted(&bound->meshes, Wanted(derivatives)));
+  PetscCall(CopyScene(bound->scene, &run.scene)); /* its loads are replaced by those that are found */
+  run.meshes = bound->meshes;
+  if (run.scene->inflate) run.meshes.unsealed.status = LAM_CONVERGED; /* not yet */
+  ierr = estimate && !run.scene->dissipating ? LamRVEEstimateCreate(run.meshes.rve[0], &run.estimate) : 0;
+  if (!ierr) ierr = RunStates(&run, responses);
+  bound->meshes = run.meshes;
+  *count = (int)run.solved;
+  if (!ierr && run.scene->inflate && !LamResponseHasFields(&responses[0]))
+    ierr = ResetRVE(bound); /* nothing is sealed */
+  (void)LamRVEEstimateDestroy(&run.estimate);
+  (void)LamSceneDestroy(&run.scene);
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
+int LamBindRVESolveOwnLoads(LamBindRVE rve, int derivatives, int estimate, void *responses, int *count)
+{
+  return (int)SolveOwnLoads(rve, derivatives, estimate, (LamResponse *)responses, count);
 }
 
 int LamBindRVEStateSize(LamBindRVE rve, size_t *bytes)
 {
-  return (int)LamRVEStateSize(rve->state, bytes);
+  const PetscErrorCode ierr = LamRVEStateSize(rve->meshes.state[0], bytes);
+
+  *bytes += sizeof(rve->meshes.F);
+  return (int)ierr;
 }
 
 int LamBindRVEGetState(LamBindRVE rve, void *bytes)
 {
-  return (int)LamRVEStatePack(rve->state, bytes);
+  memcpy(bytes, rve->meshes.F, sizeof(rve->meshes.F));
+  return (int)LamRVEStatePack(rve->meshes.state[0], (char *)bytes + sizeof(rve->meshes.F));
 }
 
 int LamBindRVESetState(LamBindRVE rve, const void *bytes)
 {
-  return (int)LamRVEStateUnpack(bytes, rve->state);
+  memcpy(rve->meshes.F, bytes, sizeof(rve->meshes.F));
+  return (int)LamRVEStateUnpack((const char *)bytes + sizeof(rve->meshes.F), rve->meshes.state[0]);
 }
 
 int LamBindRVEReset(LamBindRVE rve)
 {
-  return (int)LamRVEStateReset(rve->rve, rve->state);
+  return (int)ResetRVE(rve);
 }
 
 void LamBindRVEDestroy(LamBindRVE rve)
 {
-  (void)LamRVEStateDestroy(&rve->state);
-  (void)LamRVEDestroy(&rve->rve);
-  (void)PetscFree(rve);
+  DestroyRVE(rve);
 }
 
 /* ---- databases ---- */
@@ -270,15 +479,15 @@ int LamBindDatabaseOpen(const char *path, LamBindDatabase *database)
   return (int)OpenDatabase(path, database);
 }
 
-void LamBindDatabaseScales(LamBindDatabase database, double scales[2])
+void LamBindDatabaseNumbers(LamBindDatabase database, double numbers[5])
 {
-  scales[0] = database->source.scales.length;
-  scales[1] = database->source.scales.stress;
-}
+  const LamQuerySource *source = &database->source;
 
-void LamBindDatabaseMaterial(LamBindDatabase database, double *cohesion)
-{
-  *cohesion = database->source.cohesion * database->source.scales.stress;
+  numbers[0] = source->scales.length;
+  numbers[1] = source->scales.stress;
+  numbers[2] = source->turgor * source->scales.stress;
+  numbers[3] = source->cohesion * source->scales.stress;
+  numbers[4] = source->accuracy;
 }
 
 static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], double accuracy,
@@ -289,7 +498,7 @@ static PetscErrorCode Query(LamBindDatabase bound, int n, const double loads[], 
     const LamLoad load = LoadOf(&loads[LOAD * k], &bound->source.scales);
 
     PetscCall(LamDatabaseQuery(bound->source.database, &load, accuracy, &responses[k]));
-    LamResponseScale(bound->source.scales.stress, &responses[k]);
+    ToSI(&bound->source.scales, &responses[k]);
   }
   PetscFunctionReturn(0);
 }

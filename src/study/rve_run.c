@@ -202,28 +202,36 @@ static PetscErrorCode Dissipate(LamRVERun *run, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2])
+{
+  PetscFunctionBeginUser;
+  if (Dissipates(run))
+    PetscCall(Dissipate(run, responses));
+  else
+    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
+                             responses));
+  if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
+  if (run->meshes.stopped) PetscFunctionReturn(0);
+  if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
+  run->solved++;
+  if (run->readings || run->writer)
+    PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
+  if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SolveStates(LamRVERun *run)
 {
   PetscFunctionBeginUser;
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 
-    if (Dissipates(run))
-      PetscCall(Dissipate(run, responses));
-    else
-      PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
-                               responses));
-    if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
+    PetscCall(LamRVERunNext(run, responses));
     if (run->meshes.stopped) break;
-    if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
-    run->solved++;
     if (responses[0].status != LAM_CONVERGED) run->failed++;
     CountDoubts(run, &responses[0]);
     WarnOfSuction(run, &responses[0]);
     LamCrackAdd(&run->crack, &run->scene->micro, run->solved, &responses[0]);
-    if (run->readings || run->writer)
-      PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
-    if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
     if (run->find_onset) PetscCall(LamOnsetWatch(&run->onset, &run->meshes, run->solved, responses));
     if (run->find_failure) PetscCall(LamFailureWatch(&run->failure, &run->meshes, run->solved, responses));
     if (run->writer) {

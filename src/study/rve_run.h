@@ -53,6 +53,9 @@ typedef struct LamRVERun_s {
 
 /* Chooses what the scene leaves open, and makes the meshes. PETSC_ERR_USER_INPUT if the scene has no load. */
 PetscErrorCode LamRVERunPrepare(LamRVERun *run);
+/* The next state of the scene's load, number `solved`, with its estimate of the error. meshes.stopped: there is none.
+ */
+PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2]);
 /* Solves the states until a stop is requested, and finds onset and failure. Reports notes on doubtful states. */
 PetscErrorCode LamRVERunSolve(LamRVERun *run);
 PetscErrorCode LamRVERunDestroy(LamRVERun *run);

@@ -12,6 +12,8 @@
 #                               a process of this shell ends with that status when it, or RECEIVER, is sent the signal
 #   tissue [BLOCK=KEYS]...      a scene that begins with bonded tissue under turgor, but for the blocks of rve told, and
 #                               goes on with what comes on standard input
+#   package [MODULE...]         $python runs the Python package of the sources with the library beside $lamella; the script is
+#                               skipped where they, or modules that it needs, are not there
 #   same FILE FILE [known|ordered]
 #                               databases whose records of the same keys are the same, but for times; with known the
 #                               second may have others besides, with ordered the order and the grid are the same, too
@@ -64,6 +66,18 @@ tissue() {
   printf 'version: 1\nrve:\n'
   printf '  %s\n' "cell: {$cell}" "wall: {$wall}" "interface: {$interface}" "turgor: {$turgor}" "mesh: {$mesh}"
   cat
+}
+
+package() {
+  local module
+  python=/usr/bin/python3
+  export PYTHONPATH=$source/python LAMELLA_LIBRARY
+  LAMELLA_LIBRARY=$(dirname "$lamella")
+  for module in cffi numpy yaml "$@"; do
+    "$python" -c "import $module" 2>/dev/null || { echo "skipped: no Python module $module"; exit 77; }
+  done
+  [ -f "$LAMELLA_LIBRARY/liblamella.so" ] || { echo "skipped: no shared library in this build"; exit 77; }
+  ! nm -D "$LAMELLA_LIBRARY/liblamella.so" | grep -q __asan || { echo "skipped: the sanitizers are not loaded by Python"; exit 77; }
 }
 
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then

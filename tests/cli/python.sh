@@ -1,12 +1,7 @@
 # The Python package: its numbers are those of the program, states without an answer are flags, mistakes exceptions.
 . "$(dirname "$0")/common.sh"
 
-python=/usr/bin/python3
-export PYTHONPATH=$source/python LAMELLA_LIBRARY
-LAMELLA_LIBRARY=$(dirname "$lamella")
-"$python" -c 'import cffi, numpy, yaml' 2>/dev/null || { echo "skipped: python3-cffi, python3-numpy and python3-yaml are not installed"; exit 77; }
-[ -f "$LAMELLA_LIBRARY/liblamella.so" ] || { echo "skipped: no shared library in this build"; exit 77; }
-! nm -D "$LAMELLA_LIBRARY/liblamella.so" | grep -q __asan || { echo "skipped: the sanitizers are not loaded by Python"; exit 77; }
+package
 
 cp "$source/tests/scenes/shear-contact.yaml" contact.yaml
 expect 0 "$lamella" rve contact.yaml --json --tangent --no-estimate
@@ -138,21 +133,43 @@ if "$python" -c 'import setuptools, pip, venv, wheel' 2>/dev/null; then
 import lamella
 assert "installed" in lamella.__file__
 assert lamella.RVE("tests/scenes/shear-bonded.yaml").solve([[1, 0], [0, 1]], 2e4).converged
+import pathlib
+assert (pathlib.Path(lamella.__file__).parent / "py.typed").exists()
 assert lamella.run("check", "tests/scenes/shear-bonded.yaml").complete' || fail "the installed package"
 fi
 
-# beside mpi4py and petsc4py, where they are installed
+# beside mpi4py and petsc4py, where they are installed, also on ranks of a job; what it starts is none of them
 if "$python" -c 'import mpi4py, petsc4py' 2>/dev/null; then
-  "$python" - <<'PYTHON' || fail "beside mpi4py and petsc4py"
+  cat >beside.py <<'PYTHON'
 import sys
 from mpi4py import MPI
+import lamella
+import numpy as np
+assert lamella.quantity("1 mm") == 1e-3  # has started PETSc
 import petsc4py
 petsc4py.init(sys.argv)
 from petsc4py import PETSc
-import lamella
-import numpy as np
 vector = PETSc.Vec().createSeq(3)
 vector.set(2)
-assert lamella.RVE("tests/scenes/shear-bonded.yaml").solve(np.eye(3), 2e4).converged and vector.sum() == 6
+scene = "tests/scenes/shear-bonded.yaml"
+assert lamella.RVE(scene).solve(np.eye(3), 2e4).converged and vector.sum() == 6
+try:
+    lamella.Scene(text="version: 2")
+except lamella.InputError as error:
+    assert "scene:1:10: version" in str(error), error
+else:
+    raise AssertionError("no error")
+try:
+    vector.dot(PETSc.Vec().createSeq(4))
+except PETSc.Error as error:
+    assert error.ierr == 75, error
+else:
+    raise AssertionError("no error of petsc4py")
+if MPI.COMM_WORLD.rank == 0:
+    assert lamella.solve(scene, [np.eye(3)], 2e4, processes=1).converged.all()
+    assert lamella.run("rve", scene, ranks=2).complete
+print("solved", MPI.COMM_WORLD.allreduce(1))
 PYTHON
+  expect 0 -o 'solved 1' "$python" beside.py
+  expect 0 -o 'solved 2' mpirun -n 2 "$python" beside.py
 fi

@@ -3,6 +3,7 @@
 #include <lamella/bind.h>
 #include <lamella/error.h>
 #include <lamella/lamella.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,14 +23,14 @@ enum { LOAD = 11, STATES = 2 };
 typedef struct {
   LamBindScene scene;
   LamBindRVE rve;
-  double loads[STATES * LOAD];
+  double loads[STATES * LOAD], P[STATES * 9];
   LamResponse responses[STATES];
 } Bound;
 
 static void Enter(Bound *b)
 {
   assert_int_equal(LamBindSceneRead("test", Text, &b->scene), 0);
-  assert_int_equal(LamBindSceneLoads(b->scene, b->loads), STATES);
+  assert_int_equal(LamBindSceneLoads(b->scene, b->loads, b->P), STATES);
   assert_int_equal(LamBindRVECreate(b->scene, &b->rve), 0);
 }
 
@@ -46,13 +47,13 @@ TEST_ON(loads_are_in_pascals, Bound, b, Enter(b), Leave(b))
   assert_near(b->loads[LOAD + 1], 0.2, 0);
 }
 
-TEST_ON(scales_are_the_apothem_and_the_moduli, Bound, b, Enter(b), Leave(b))
+TEST_ON(numbers_are_the_apothem_the_moduli_and_the_pressures, Bound, b, Enter(b), Leave(b))
 {
-  double scales[2];
+  const double expected[4] = {75e-6, 1.1e5, 2e4, 0};
+  double numbers[4];
 
-  LamBindSceneScales(b->scene, scales);
-  assert_near(scales[0], 75e-6, 1e-18);
-  assert_near(scales[1], 1.1e5, 1e-9);
+  LamBindSceneNumbers(b->scene, numbers);
+  for (int i = 0; i < 4; i++) assert_near(numbers[i], expected[i], 1e-12 * expected[i]);
 }
 
 /* The same solve by the library's own functions, which count stresses in C1 + C2. */
@@ -64,7 +65,7 @@ TEST_ON(responses_are_in_pascals, Bound, b, Enter(b), Leave(b))
   LamScene *scene;
   LamRVE rve;
 
-  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, NULL, 1, 0, b->responses), 0);
   assert_int_equal(LamSceneReadText("test", Text, &scene), 0);
   assert_int_equal(LamRVECreate(PETSC_COMM_SELF, &rve), 0);
   assert_int_equal(LamRVESetMicrostructure(rve, &scene->micro), 0);
@@ -86,22 +87,57 @@ TEST_ON(a_solve_goes_on_from_a_state_that_was_kept, Bound, b, Enter(b), Leave(b)
   size_t size;
   void *bytes;
 
-  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, NULL, 1, 0, b->responses), 0);
   assert_int_equal(LamBindRVEStateSize(b->rve, &size), 0);
   bytes = malloc(size);
   assert_int_equal(LamBindRVEGetState(b->rve, bytes), 0);
   assert_int_equal(LamBindRVEReset(b->rve), 0);
   assert_int_equal(LamBindRVESetState(b->rve, bytes), 0);
-  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, &again), 0);
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, NULL, 1, 0, &again), 0);
   assert_near(again.P[1], b->responses[0].P[1], 1e-9 * fabs(b->responses[0].P[1]));
   assert_true(again.newton_iterations < b->responses[0].newton_iterations);
   free(bytes);
 }
 
+/* The stress of a state, prescribed in one component, gives its F there. */
+TEST_ON(F_is_found_where_P_is_prescribed, Bound, b, Enter(b), Leave(b))
+{
+  LamResponse found;
+
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, NULL, 1, 0, b->responses), 0);
+  assert_int_equal(LamBindRVEReset(b->rve), 0);
+  b->loads[0] = NAN;
+  b->P[0] = b->responses[0].P[0];
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, b->P, 1, 0, &found), 0);
+  assert_int_equal(found.status, LAM_CONVERGED);
+  assert_near(found.load.F[0], 1, 1e-6);
+  assert_near(found.P[1], b->responses[0].P[1], 1e-6 * 1.1e5);
+}
+
+TEST_ON(F_and_P_of_a_component_are_a_mistake, Bound, b, Enter(b), Leave(b))
+{
+  b->P[4] = 0;
+  assert_int_equal(LamBindErrorKind(LamBindRVESolve(b->rve, 2, b->loads, b->P, 1, 0, b->responses)), 'i');
+  assert_non_null(strstr(LamErrorMessage(), "state 0: F22 and P22 are both given"));
+}
+
+/* From undeformed tissue, whatever was solved before. */
+TEST_ON(own_loads_are_those_of_the_scene, Bound, b, Enter(b), Leave(b))
+{
+  LamResponse own[STATES];
+  int count;
+
+  assert_int_equal(LamBindRVESolve(b->rve, STATES, b->loads, NULL, 1, 0, b->responses), 0);
+  assert_int_equal(LamBindRVESolveOwnLoads(b->rve, 1, 1, own, &count), 0);
+  assert_int_equal(count, STATES);
+  for (int k = 0; k < STATES; k++) assert_near(own[k].P[1], b->responses[k].P[1], 1e-9 * 1.1e5);
+  assert_true(own[0].error_estimate > 0);
+}
+
 TEST_ON(a_state_without_an_answer_is_no_error, Bound, b, Enter(b), Leave(b))
 {
   b->loads[0] = -1;
-  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, 1, b->responses), 0);
+  assert_int_equal(LamBindRVESolve(b->rve, 1, b->loads, NULL, 1, 0, b->responses), 0);
   assert_int_not_equal(b->responses[0].status, LAM_CONVERGED);
   assert_true(b->responses[0].reason[0] != '\0');
 }
@@ -136,7 +172,6 @@ TEST(sealed_cells_and_patches_are_no_material)
                                       "  turgor: {mode: sealed, pressure: 0.02 MPa}\n",
                                       "  patch: {columns: 2, rows: 2, sides: free}\n"};
   static const char *const words[] = {"", "rve.turgor.mode: sealed", "rve.patch"};
-  double cohesion;
 
   for (int k = 0; k < 3; k++) {
     LamBindScene scene;
@@ -145,7 +180,7 @@ TEST(sealed_cells_and_patches_are_no_material)
 
     snprintf(text, sizeof(text), "%s%s", texts[0], k ? texts[k] : "");
     CHECK(LamBindSceneRead("test", text, &scene));
-    code = LamBindSceneMaterial(scene, &cohesion);
+    code = LamBindSceneIsMaterial(scene);
     assert_int_equal(code != 0, k > 0);
     if (k) assert_non_null(strstr(LamErrorMessage(), words[k]));
     LamBindSceneDestroy(scene);

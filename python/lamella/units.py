@@ -1,0 +1,24 @@
+"""Units: quantities to SI, and SI values to other units, by what scene files know (udunits2)."""
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._library import call, ffi, library
+
+DIMENSIONS = ("length", "stress", "angle", "time", "temperature")
+
+
+def quantity(text: str, dimension: str | None = None) -> float:
+    """A quantity as scenes have it in SI units: quantity("0.02 MPa") is 20000.0, quantity("4 degC") 277.15. dimension:
+    length, stress, angle, time or temperature; None: any that scenes have. InputError: its unit is missing, unknown or
+    of another dimension."""
+    value = ffi.new("double *")
+    number = -1 if dimension is None else DIMENSIONS.index(dimension)
+    call(library.LamBindQuantity, str(text).encode(), number, value)
+    return value[0]
+
+
+def to(values: ArrayLike, unit: str) -> np.ndarray:
+    """Values in SI units in another unit: to(response.P, "MPa"), to(result.time, "day"), to(result.reaction, "N/mm").
+    The shape stays. InputError: the unit is not known."""
+    zero, one = quantity(f"0 {unit}"), quantity(f"1 {unit}")
+    return (np.asarray(values) - zero) / (one - zero)
