@@ -144,6 +144,8 @@ def draw(source, state=None, field=None, **options):
         if source.responses.help(name).endswith("(Pa)"):
             unit, size = pressure_unit(values)
             values = values / size
+        elif source.responses.help(name).endswith("(m)"):
+            values = values / source.apothem
     page = Page(WIDTH, HEIGHT, options)
     norm = Range(values.ravel(), options)
     width, height = page.size
