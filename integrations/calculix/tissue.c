@@ -304,7 +304,7 @@ static int Solve(Tissue t, const TissueLoad *load, double number, int keep, Tiss
   FillLoad(t, load, row);
   p = FindPoint(t, load->element, load->point);
   Begin(t, load, number, p);
-  Check(LamBindRVESolve(t->rve, 1, row, 1, raw));
+  Check(LamBindRVESolve(t->rve, 1, row, NULL, 1, 0, raw));
   known = Take(t, (const char *)raw, response);
   if (known && keep) Keep(t, load, p);
   return known;

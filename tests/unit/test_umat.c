@@ -168,7 +168,7 @@ static void Direct(const double F[9], LamResponse *response)
   load[9] = Turgor * Unit;
   CHECK(LamBindSceneRead(PathOf("bonded.yaml"), NULL, &scene));
   CHECK(LamBindRVECreate(scene, &rve));
-  CHECK(LamBindRVESolve(rve, 1, load, 1, response));
+  CHECK(LamBindRVESolve(rve, 1, load, NULL, 1, 0, response));
   assert_int_equal(response->status, LAM_CONVERGED);
   for (int i = 0; i < 9; i++) response->P[i] /= Unit;
   LamBindRVEDestroy(rve);
