@@ -3,6 +3,8 @@
 #   ./setup.sh            install what is missing, build the program, run the main job and show its result
 #   ./setup.sh test       install what is missing, build everything, run the tests
 #   ./setup.sh deps       only install what is missing
+#   ./setup.sh notebook   install Jupyter's notebook, too, and open those of docs/notebooks
+#   ./setup.sh partners   install FEniCSx and build CalculiX for their tests, where Debian has them
 #   ./setup.sh fuzz       install clang, too, and build the targets of tests/fuzz with it
 # Needs root or sudo only where a package is missing.
 set -euo pipefail
@@ -16,7 +18,8 @@ packages=(
   libmuparser-dev # expressions of the position
   python3-numpy python3-cffi python3-yaml python3-h5py python3-matplotlib # of the Python package
 )
-test_packages=(libcmocka-dev python3-pip python3-setuptools python3-venv python3-wheel python3-meshio)
+test_packages=(libcmocka-dev python3-pip python3-setuptools python3-venv python3-wheel python3-meshio
+  python3-nbclient python3-ipykernel python3-scipy) # of the notebooks
 fuzz_packages=(clang libclang-rt-dev)
 
 # One thread per rank, on one machine as on a cluster; Open MPI refuses root unless it is told.
@@ -82,9 +85,19 @@ case "${1-run}" in
     build release build
     ctest --test-dir build -j2 --output-on-failure -LE 'slow|bench'
     ;;
+  notebook)
+    install_missing "${packages[@]}" python3-scipy python3-ipykernel jupyter-notebook
+    build release build --target lamella lamella_program lamella_shared
+    PYTHONPATH=$PWD/python exec jupyter notebook --notebook-dir=docs/notebooks
+    ;;
+  partners)
+    install_missing "${packages[@]}"
+    ! apt-cache show python3-dolfinx >/dev/null 2>&1 || install_missing python3-dolfinx
+    ! apt-cache show calculix-ccx >/dev/null 2>&1 || [ -x build-ccx/ccx ] || integrations/calculix/build_ccx.sh build-ccx
+    ;;
   fuzz)
     install_missing "${packages[@]}" "${test_packages[@]}" "${fuzz_packages[@]}"
     build fuzz build-fuzz --target fuzz
     ;;
-  *) echo "usage: ./setup.sh [deps|test|fuzz]" >&2; exit 1 ;;
+  *) echo "usage: ./setup.sh [deps|test|notebook|partners|fuzz]" >&2; exit 1 ;;
 esac

@@ -81,7 +81,8 @@ class Responses:
         if kind == "b":
             return values.astype(bool)
         if kind == "s":
-            return np.char.decode(values, "utf-8", "replace")
+            texts = [text.split(b"\0")[0].decode("utf-8", "replace") for text in values.ravel()]  # to C's end of a text
+            return np.array(texts, dtype=str).reshape(values.shape)[()]
         if kind == "e":
             found, place = np.unique(values.ravel(), return_inverse=True)
             names = np.array([name_of(name, value) for value in found], dtype=object)

@@ -29,6 +29,8 @@ class Result:
         try:
             self.file = h5py.File(path, "r")
         except OSError as error:
+            if not os.path.exists(path):
+                raise FileNotFoundError(f"{path}: No such file or directory") from None
             raise InputError(f"{path}: cannot be read: {error}") from None
         attributes = self.file.attrs
         if attributes.get("format", b"") not in (b"lamella", "lamella"):

@@ -138,10 +138,10 @@ fi
 
 # pictures
 for state in 1 2; do
-  expect 0 "$lamella" plot apart.h5 --state $state -o state$state.png
+  expect 0 "$lamella" plot --dpi 40 apart.h5 --state $state -o state$state.png
   head -c 8 state$state.png | grep -qa PNG || fail "no picture of state $state"
 done
-expect 0 "$lamella" plot apart.h5 -o apart.svg
+expect 0 "$lamella" plot --dpi 40 apart.h5 -o apart.svg
 grep -q '<svg' apart.svg || fail "no SVG picture"
 
 # answers from records of contact tissue: near their turgor and cohesion, gaps only in a record's own state

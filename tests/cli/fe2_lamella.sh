@@ -29,7 +29,7 @@ done
 for name in broken_fraction broken_fraction_max broken_face_max stored dissipated released work; do
   grep -q "\"$name\"" tear.xdmf || fail "no field $name"
 done
-expect 0 "$lamella" plot tear.h5 --field broken_fraction -o broken.png
+expect 0 "$lamella" plot --dpi 40 tear.h5 --field broken_fraction -o broken.png
 
 # once lost, ellipticity is lost for what follows; damage never falls
 /usr/bin/python3 - <<'PYTHON' || fail "steps: $(cat steps)"

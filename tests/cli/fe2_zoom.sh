@@ -58,8 +58,8 @@ for name in "cache", "database":
     with h5py.File(f"{name}.h5") as h5: # interpolated to 1 %
         assert np.all(h5["zoom/difference"][()] < 0.02) and np.any(h5["zoom/difference"][()] > 1e-9)
 PYTHON
-"$lamella" plot direct.h5 -o zoom.png >/dev/null
-"$lamella" plot direct.h5 --state 0 -o plain.png >/dev/null
+"$lamella" plot --dpi 40 direct.h5 -o zoom.png >/dev/null
+"$lamella" plot --dpi 40 direct.h5 --state 0 -o plain.png >/dev/null
 /usr/bin/python3 - <<'PYTHON' || fail "the picture of the last step is not taller, for the zooms, than that of another step"
 import struct
 height = [struct.unpack(">II", open(name, "rb").read(24)[16:])[1] for name in ("zoom.png", "plain.png")]

@@ -29,5 +29,5 @@ with h5py.File("torn.h5") as f:
     assert 0.1 < broken < 0.9
 PYTHON
 fi
-expect 0 "$lamella" plot torn.h5 --state last -o torn.png
-expect 0 "$lamella" plot torn.h5 --strip -o torn.svg
+expect 0 "$lamella" plot --dpi 40 torn.h5 --state last -o torn.png
+expect 0 "$lamella" plot --dpi 40 torn.h5 --strip -o torn.svg

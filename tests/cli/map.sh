@@ -81,15 +81,15 @@ for signal in TERM KILL; do
   [ "$(member $signal.h5 records)" -ge 21 ] || fail "nothing was kept after $signal"
   expect 0 "$lamella" map many.yaml -o $signal.h5 --resume --quiet
   [ "$(member $signal.h5 records)" = 840 ] || fail "not complete after $signal"
-  "$lamella" plot $signal.h5 -o $signal.svg >/dev/null
+  "$lamella" plot --dpi 40 $signal.h5 -o $signal.svg >/dev/null
 done
-"$lamella" plot whole.h5 -o whole.svg >/dev/null
+"$lamella" plot --dpi 40 whole.h5 -o whole.svg >/dev/null
 for signal in TERM KILL; do cmp -s whole.svg $signal.svg || fail "the map resumed after $signal looks different"; done
 
 # pictures of other fields
-expect 0 "$lamella" plot a.h5 --field max_wall_tension -o a.png
-expect 2 -e load_factor "$lamella" plot a.h5 --field colour
-expect 2 "$lamella" plot a.h5 --state 1
+expect 0 "$lamella" plot --dpi 40 a.h5 --field max_wall_tension -o a.png
+expect 2 -e load_factor "$lamella" plot --dpi 40 a.h5 --field colour
+expect 2 "$lamella" plot --dpi 40 a.h5 --state 1
 
 # a unit that is no UTF-8, with a checksum that is right
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then

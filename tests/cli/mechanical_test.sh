@@ -110,5 +110,5 @@ tissue interface='law: contact, cohesion: 0.05 MPa' >apart.yaml <<'YAML'
 load: [{inflate: true}, {ramp: {to: [[1.4, 0], [0, free]], P: [[x, x], [x, 0 MPa]], steps: 6}}]
 YAML
 expect 0 -o '^  peak 0.0' "$lamella" rve apart.yaml --no-estimate -o apart.h5
-expect 0 "$lamella" plot apart.h5 -o apart.svg
+expect 0 "$lamella" plot --dpi 40 apart.h5 -o apart.svg
 grep -q '<!-- peak -->' apart.svg || fail "the picture does not mark the peak"

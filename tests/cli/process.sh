@@ -25,14 +25,14 @@ expect 0 -o '"kind": "process"' "$lamella" info a.h5 --json
 expect 0 "$lamella" info a.h5 --check
 head -1 a.csv | grep -q '^state,event,time (s),.*,F11,F12,F21,F22,F33,P11 (MPa),' || fail "the table: $(head -1 a.csv)"
 grep -q '^[0-9]*,lamella_normal,[0-9]' a.csv || fail "the table has no event: $(cut -c1-60 a.csv)"
-expect 0 "$lamella" plot a.h5 -o a.svg
+expect 0 "$lamella" plot --dpi 40 a.h5 -o a.svg
 grep -q svg a.svg || fail "no picture"
-expect 0 "$lamella" plot a.h5 --state 0 -o s.svg
-expect 0 "$lamella" plot a.h5 --film -o film.pdf
-expect 0 "$lamella" plot a.h5 --film -o film.svg
+expect 0 "$lamella" plot --dpi 40 a.h5 --state 0 -o s.svg
+expect 0 "$lamella" plot --dpi 40 a.h5 --film -o film.pdf
+expect 0 "$lamella" plot --dpi 40 a.h5 --film -o film.svg
 [ "$(ls film-*.svg | wc -l)" -ge 5 ] || fail "numbered frames: $(ls)"
-expect 2 -e '--frames N keeps them' "$lamella" plot a.h5 --state 1 -o s.svg
-expect 2 "$lamella" plot a.h5 --map a.h5 -o s.svg
+expect 2 -e '--frames N keeps them' "$lamella" plot --dpi 40 a.h5 --state 1 -o s.svg
+expect 2 "$lamella" plot --dpi 40 a.h5 --map a.h5 -o s.svg
 
 # walls that lose their fibres alone: no database serves, a solve does
 sed 's/of: walls, law: fractional_conversion, rate: 0.1/of: C4, law: fractional_conversion, rate: 0.1/; s/7 day/1 day/; s/3 day/0.5 day/' \
@@ -43,7 +43,7 @@ expect 2 -e 'the parameters of the walls do not change alike' "$lamella" process
 # nothing is left of the walls: a true reason, and what was reached is kept
 sed 's/plateau: 0.6/plateau: 0/; s/rate: 0.1/rate: 9/g; s/7 day/70 day/' "$example" >gone.yaml
 expect 3 -e 'ended at' "$lamella" process gone.yaml -o gone.h5
-expect 0 "$lamella" plot gone.h5 -o gone.svg
+expect 0 "$lamella" plot --dpi 40 gone.h5 -o gone.svg
 
 # its way over a map of failure
 sed -e 's/steps: 8/steps: 2/; s/points: [23]/points: 2/' -e 's/mesh: {along: 8, through: 2}/mesh: {along: 4, through: 1}/' \
@@ -57,7 +57,7 @@ process:
 YAML
 expect 0 "$lamella" process loosening.yaml -o loosening.h5
 expect 0 "$lamella" process loosening.yaml --response cache # without a file
-expect 0 "$lamella" plot loosening.h5 --map map.h5 -o way.svg
+expect 0 "$lamella" plot --dpi 40 loosening.h5 --map map.h5 -o way.svg
 [ -s way.svg ] || fail "no picture of the way"
 
 # cells in contact that exchange water, from a cache

@@ -33,14 +33,14 @@ awk "BEGIN { d = $(first query.txt) - ($(first out.txt)); exit !(d * d < 1e-6) }
 
 # one parameter that changes in time: solved directly, in the file, refused of a database
 expect 0 -o '"k1": 0.62' "$lamella" process "$scene" -o p.h5 --json
-expect 0 "$lamella" plot p.h5 -o p.svg
+expect 0 "$lamella" plot --dpi 40 p.h5 -o p.svg
 expect 2 -e 'the parameters of the walls do not change alike' "$lamella" process "$scene" -d d.h5
 sed 's/of: k1/of: C4/' "$scene" >lacks.yaml
 expect 2 -e 'C4: no wall of the scene has it' "$lamella" check lacks.yaml
 
 # a map over the exponent, and over the modulus
 expect 0 "$lamella" map "$scene" -o m.h5
-expect 0 "$lamella" plot m.h5 -o m.svg
+expect 0 "$lamella" plot --dpi 40 m.h5 -o m.svg
 sed 's/quantity: k2, from: 0, to: 10/quantity: k1, from: 0.1 MPa, to: 1 MPa/' "$scene" >modulus.yaml
 expect 0 "$lamella" map modulus.yaml -o m1.h5
 

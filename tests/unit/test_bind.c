@@ -149,14 +149,14 @@ TEST(a_mesh_that_is_left_open_is_chosen)
   char open[sizeof(Text)];
   LamBindScene scene;
   LamResponse response;
-  double loads[STATES * LOAD];
+  double loads[STATES * LOAD], P[STATES * 9];
   LamBindRVE rve;
 
   snprintf(open, sizeof(open), "%.*s%s", (int)(mesh - Text), Text, rest);
   CHECK(LamBindSceneRead("test", open, &scene));
-  LamBindSceneLoads(scene, loads);
+  LamBindSceneLoads(scene, loads, P);
   CHECK(LamBindRVECreate(scene, &rve));
-  CHECK(LamBindRVESolve(rve, 1, loads, 0, &response));
+  CHECK(LamBindRVESolve(rve, 1, loads, NULL, 0, 0, &response));
   assert_int_equal(response.status, LAM_CONVERGED);
   LamBindRVEDestroy(rve);
   LamBindSceneDestroy(scene);

@@ -104,7 +104,7 @@ class Page(Figure):
     def _repr_png_(self):
         with matplotlib.rc_context(STYLE):
             shown = io.BytesIO()
-            self.savefig(shown, format="png", dpi=144)
+            self.savefig(shown, format="png", dpi=110)
             return shown.getvalue()
 
 
