@@ -281,10 +281,10 @@ static PetscErrorCode ReadMap(const char path[], json_t *info)
   json_t *map = json_object(), *modes = json_object();
 
   PetscFunctionBeginUser;
-  json_object_set_new(info, "map", map);
+  json_object_set_new(info, "map", map); /* which owns the rest, also if the file is refused */
+  json_object_set_new(map, "modes", modes);
   PetscCall(ReadAxis(path, 'x', map));
   PetscCall(ReadAxis(path, 'y', map));
-  json_object_set_new(map, "modes", modes);
   PetscCall(CountModes(path, modes));
   PetscFunctionReturn(0);
 }
