@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
-from lamella.plot.page import DASHES, HEIGHT, LINES, WIDTH, Page, legend, settle, styled  # noqa: E402
+from lamella.plot.page import DASHES, LINES, WIDTH, Page, legend, settle, styled  # noqa: E402
 
 CURVES = (("bonded, free, sheared", 0), ("contact, free, pulled", 0), ("contact, free, sheared", 1),
           ("contact, affine, pressed", 0))

@@ -62,14 +62,14 @@ def fe2(path, state=None, field=None, strip=False, film=False, **options):
 
 
 def process(path, state=None, field=None, strip=False, film=False, map=None, **options):
-    """Charts of `process -o` against time; state: beside the cells of this state; film: a list of Pages, one for each state
-    whose cells are kept; map: a file of `map -o`, over which the path of the tissue is drawn."""
+    """Charts of `process -o` against time; state: beside the cells of this state; film: a list of Pages, one for each
+    state whose cells are kept; map: a file of `map -o`, over which the path of the tissue is drawn."""
     return _draw("process", path, {"state": state, "field": field, "strip": strip, "film": film, "map": map, **options})
 
 
 def database(path, field=None, angle=None, suction=None, turgor=None, accuracy=None, **options):
-    """A slice through the table of `build -d`, at an angle ("15 deg") and a suction or turgor ("0.02 MPa"), for an accuracy;
-    field (stress, turgor): its records in strain space."""
+    """A slice through the table of `build -d`, at an angle ("15 deg") and a suction or turgor ("0.02 MPa"), for an
+    accuracy; field (stress, turgor): its records in strain space."""
     return _draw("database", path, {"field": field, "angle": angle, "suction": suction, "turgor": turgor,
                                     "accuracy": accuracy, **options})
 

@@ -1,4 +1,4 @@
-"""What `lamella plot` runs: one argument, a JSON object with the file, the options of its picture, and where it goes."""
+"""What `lamella plot` runs: one argument, a JSON object with the file, the options of its picture and where it goes."""
 import json
 import sys
 
@@ -13,8 +13,10 @@ def _progress(total):
     """A line on the terminal that tells how many pages are written."""
     if not sys.stderr.isatty():
         return None
-    return lambda done: print(f"\r\033[K{done} of {total} pages" if done < total else "\r\033[K", end="", file=sys.stderr,
-                              flush=True)
+
+    def tell(done):
+        print(f"\r\033[K{done} of {total} pages" if done < total else "\r\033[K", end="", file=sys.stderr, flush=True)
+    return tell
 
 
 def run(request):

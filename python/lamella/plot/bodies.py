@@ -1,12 +1,12 @@
-"""Pictures of FE2 runs and of processes of bodies: the deformed body at a step with a field, the cells at chosen points,
-and the reactions of its sides, or charts against time."""
+"""Pictures of FE2 runs and of processes of bodies: the deformed body at a step with a field, the cells at chosen
+points, and the reactions of its sides, or charts against time."""
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, PathPatch, Polygon, Rectangle
 
 from .. import InputError
 from . import mesh as meshes
-from .page import (DARK, DASHES, FIELD, GAPS, HEIGHT, LINES, RED, ROW, SMALL, WIDTH, Page, Range, bar, bar_width, legend,
+from .page import (DARK, DASHES, FIELD, HEIGHT, LINES, RED, ROW, SMALL, WIDTH, Page, Range, bar, bar_width, legend,
                    limits, mark, ratio, settle, styled)
 from .strip import chosen, strip as draw_strip
 from .timeline import TimeLine, charts, film_page
@@ -67,8 +67,8 @@ ROUNDING = 1e-6  #: of the largest reaction: a smaller one, as of a roller's fre
 
 
 class Reactions:
-    """What the file has of each step: load factor, reactions [step, side, 2] in N/mm, and the displacement of the loaded
-    side in mm, if there is one."""
+    """What the file has of each step: load factor, reactions [step, side, 2] in N/mm, and the displacement of the
+    loaded side in mm, if there is one."""
 
     def __init__(self, source, steps):
         self.sides = [name for name in source.text("macro/boundaries").split("\n") if name]
@@ -147,9 +147,10 @@ class Body:
         self.label = f"{label} ({unit})" if unit else label
         self.steps = source.array("macro/steps").ravel()
         self.nodes = source.points("macro/nodes")
-        self.mesh = meshes.Mesh(source.elements("macro/elements"), len(self.nodes), name=f"{source.path}: macro/elements")
+        elements, n = source.elements("macro/elements"), len(self.nodes)
+        self.mesh = meshes.Mesh(elements, n, name=f"{source.path}: macro/elements")
         self.reactions = Reactions(source, len(self.steps))
-        self.gripped = source.array("macro/gripped", len(self.nodes), 1).ravel() if source.has("macro/gripped") else None
+        self.gripped = source.array("macro/gripped", n, 1).ravel() if source.has("macro/gripped") else None
         self.times = TimeLine(source, len(self.steps)) if source.has("process/time") else None
 
     def row(self, state):
@@ -227,8 +228,8 @@ class Body:
         names = [name for name, has in (("plate", (radii <= 0).any()), ("indenter", (radii > 0).any()),
                                         ("grip", self.has_grip)) if has]
         if names:
-            key.axes.add_patch(Rectangle((key.x, key.y - RIGID_WIDTH / 2), 2 * RIGID_WIDTH, RIGID_WIDTH, facecolor=RIGID,
-                                         edgecolor=DARK, linewidth=0.6))
+            key.axes.add_patch(Rectangle((key.x, key.y - RIGID_WIDTH / 2), 2 * RIGID_WIDTH, RIGID_WIDTH,
+                                         facecolor=RIGID, edgecolor=DARK, linewidth=0.6))
             key.x += 2 * RIGID_WIDTH + 4
             key.x += key.text(", ".join(names)) + 10
         key.undeformed("undeformed")
@@ -280,7 +281,8 @@ class Zooms:
             at = body.points(self.position[k])
             at = body.frame[0] + at[0], body.frame[1] + body.frame[3] - at[1]
             for colour, line in (("white", 1.3), (DARK, 0.5)):  # seen on dark colours, too
-                over.add_collection(LineCollection([[at, (x, top)], [at, (x, top + high)]], colors=colour, linewidths=line))
+                lines = [[at, (x, top)], [at, (x, top + high)]]
+                over.add_collection(LineCollection(lines, colors=colour, linewidths=line))
             over.plot(*at, "s", markersize=3.2, color="white", markeredgecolor=DARK, markeredgewidth=0.9)
             view.axes.annotate(f"$X$ = ({self.place[k, 0]:.3g}, {self.place[k, 1]:.3g}) mm", (0, 1), (2, -2),
                                xycoords="axes fraction", textcoords="offset points", va="top", size=SMALL, zorder=9,
@@ -308,7 +310,8 @@ def _time_charts(body):
     lost = t.column("plasmolysed")
     if t.is_known(lost) and t.varies(lost):
         damage.append((lost, "without turgor"))
-    return [("reaction $R$ (N/mm)", forces), ("turgor $p$ (MPa)", turgor), ("share of the start", shares), (label, damage)]
+    return [("reaction $R$ (N/mm)", forces), ("turgor $p$ (MPa)", turgor), ("share of the start", shares),
+            (label, damage)]
 
 
 def _page(body, options):

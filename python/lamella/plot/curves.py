@@ -71,8 +71,8 @@ class LoadAxis:
 
 
 def peak(responses):
-    """The state at which the stress along the way of F has risen most since the first response, (P - P1) : (F - F1) over
-    ||F - F1||; None: it does not rise."""
+    """The state at which the stress along the way of F has risen most since the first response, (P - P1) : (F - F1)
+    over ||F - F1||; None: it does not rise."""
     known = np.flatnonzero(solved(responses))
     if not len(known):
         return None
@@ -86,8 +86,8 @@ def peak(responses):
 
 
 def stress(page, axes, responses, keys, test=None, options=None):
-    """P11, P12, P21, P22 over the states; rings around unstable ones, crosses for those without an answer. test: what was
-    read off the curve (docs/reference/commands.md, Mechanical tests)."""
+    """P11, P12, P21, P22 over the states; rings around unstable ones, crosses for those without an answer. test: what
+    was read off the curve (docs/reference/commands.md, Mechanical tests)."""
     load, known, unstable = LoadAxis(responses, keys), solved(responses), responses.status == "unstable"
     unit, size = pressure_unit(responses.P[known][:, :2, :2])
     stride = 1 if len(keys) <= 40 else (len(keys) + 19) // 20

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from .. import InputError
 from .curves import solved
-from .page import (FIELD, HEIGHT, INK, SMALL, WIDTH, Page, Range, bar, bar_width, legend, limits, near, pressure_unit,
+from .page import (FIELD, HEIGHT, INK, WIDTH, Page, Range, bar, bar_width, legend, limits, near, pressure_unit,
                    settle, styled)
 
 EMPTY = "#ededed"  #: a point that is not computed
@@ -82,8 +82,8 @@ def _onset(axes, m):
     load, other = (m.x, m.y) if along_x else (m.y, m.x)
     last = (slice(None), -1) if along_x else (-1, slice(None))
     at = m.load_factor[last]
-    onset = np.where(np.isnan(at), np.nan, m.of_records(lambda r: r.F[:, 0, 1])[last]) if load.quantity == "shear" else at
-    onset = np.where(onset >= load.edges[0], onset, np.nan)
+    onset = m.of_records(lambda r: r.F[:, 0, 1])[last] if load.quantity == "shear" else at
+    onset = np.where(~np.isnan(at) & (onset >= load.edges[0]), onset, np.nan)
     axes.plot(*((onset, other.values) if along_x else (other.values, onset)), color=INK, linewidth=1.0, zorder=3)
 
 
@@ -108,7 +108,7 @@ def _contours(page, axes, m):
 def modes(page, axes, m, more=()):
     """How each point fails; more: lines that the legend also names."""
     shown = ListedColormap([EMPTY] + [colour for _, colour in MODES.values()])
-    axes.pcolormesh(m.x.edges, m.y.edges, m.mode, cmap=shown, vmin=-1.5, vmax=len(MODES) - 0.5, shading="flat", zorder=1)
+    axes.pcolormesh(m.x.edges, m.y.edges, m.mode, cmap=shown, vmin=-1.5, vmax=len(MODES) - 0.5, zorder=1)
     unknown = np.argwhere(m.mode == len(MODES) - 1)
     axes.plot(m.x.values[unknown[:, 1]], m.y.values[unknown[:, 0]], "x", color=INK, markersize=3.6, markeredgewidth=0.7)
     _scales(axes, m)
@@ -162,5 +162,6 @@ def draw(source, state=None, field=None, **options):
     limits(right, options)
     label = FIELD_LABELS.get(name, name.replace("_", " "))
     frame = right.get_position()
-    bar(page, frame.x1 * width, (1 - frame.y1) * height, frame.height * height, norm, f"{label} ({unit})" if unit else label)
+    label = f"{label} ({unit})" if unit else label
+    bar(page, frame.x1 * width, (1 - frame.y1) * height, frame.height * height, norm, label)
     return page

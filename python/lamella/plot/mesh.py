@@ -27,8 +27,8 @@ def _triangles(r, s):
 
 
 class Mesh:
-    """elements [n, 9], or [n, 6] of triangles, which have -1 behind their six nodes among others; groups [n]: edges between
-    elements of different groups are boundaries of both."""
+    """elements [n, 9], or [n, 6] of triangles, which have -1 behind their six nodes among others; groups [n]: edges
+    between elements of different groups are boundaries of both."""
 
     def __init__(self, elements, node_count, groups=None, name="elements"):
         elements = np.asarray(elements)
@@ -110,8 +110,8 @@ def paths(loops, x):
 
 
 def field(mesh, x, values, scale, copies=1, per_element=False):
-    """Points [n, 2], triangles [m, 3] and values [n] of a field on the mesh at positions x, whose values are of nodes or,
-    per_element, of elements. scale: points of the page per unit of length; copies: how often it will be drawn."""
+    """Points [n, 2], triangles [m, 3] and values [n] of a field on the mesh at positions x, whose values are of nodes
+    or, per_element, of elements. scale: points of the page per unit of length; copies: how often it will be drawn."""
     cuts = int(np.clip(mesh.sizes(x).max(initial=0) * scale / PIECE, 1, MOST_CUTS))
     cuts = max(1, min(cuts, int(np.sqrt(MOST_TRIANGLES / (2 * copies * max(len(mesh.elements), 1))))))
     at = np.linspace(-1, 1, cuts + 1)

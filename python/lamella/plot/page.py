@@ -186,7 +186,7 @@ def bar_width(norm):
     values = [v for v in values if norm.vmin <= v <= norm.vmax] or [norm.vmin]
     formatter = _formatter()
     formatter.create_dummy_axis()
-    return 20 + TEXT + 0.62 * SMALL * max(len(label.strip("$")) for label in map(_plain, formatter.format_ticks(values)))
+    return 20 + TEXT + 0.62 * SMALL * max(len(_plain(label)) for label in formatter.format_ticks(values))
 
 
 def _plain(label):
@@ -255,7 +255,8 @@ def mark(page, axes, x, text=None, colour=EVENT, style=":"):
         return
     places = [(x, height, side, 0, "right" if side < 0 else "left", end)
               for height, end in ((0.97, "top"), (0.5, "center"), (0.03, "bottom")) for side in (-2, 2)]
-    page.labels.append((axes, axes.get_xaxis_transform(), text, places, {"rotation": 90, "size": SMALL, "color": colour}))
+    style = {"rotation": 90, "size": SMALL, "color": colour}
+    page.labels.append((axes, axes.get_xaxis_transform(), text, places, style))
 
 
 def near(page, axes, x, y, text, away=4, **style):
@@ -277,8 +278,8 @@ def _fit(page, axes, x, y, width, height):
         axes.yaxis.get_offset_text().set(x=-0.02, ha="right")  # not below the legend
         if axes in page.chart_legends:
             _legend(axes, *page.chart_legends[axes])
-        whole, frame = axes.get_tightbbox(page.canvas.get_renderer()).get_points(), axes.get_window_extent().get_points()
-        place = wanted + frame - whole
+        whole, frame = axes.get_tightbbox(page.canvas.get_renderer()), axes.get_window_extent()
+        place = wanted + frame.get_points() - whole.get_points()
         axes.set_position(Bbox(place / (page.size * page.dpi / 72)))
 
 

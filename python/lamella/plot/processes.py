@@ -1,7 +1,5 @@
 """Pictures of a process at a material point: charts against time, the cells of its states beside them, the path of the
 tissue over a map of its failure."""
-import numpy as np
-
 from .. import InputError
 from .maps import Map, modes
 from .page import HEIGHT, NOW, WIDTH, Page, near, settle, styled
@@ -31,12 +29,12 @@ def _four(source, line):
 
 
 def _path(source, line, of_map, options):
-    """The way of the states. The map is of the initial walls: when all wall moduli have become s times the initial ones,
-    tissue fails as the initial tissue does at p / s and g / s."""
+    """The way of the states. The map is of the initial walls: when all wall moduli have become s times the initial
+    ones, tissue fails as the initial tissue does at p / s and g / s."""
     m = Map(Source(of_map))
     if {m.x.quantity, m.y.quantity} != {"turgor", "cohesion"}:
-        raise InputError(f"--map {of_map}: is of {m.x.quantity} and {m.y.quantity}; the path of a process is drawn over "
-                         "turgor and cohesion")
+        raise InputError(f"--map {of_map}: is of {m.x.quantity} and {m.y.quantity}; the path of a process is drawn "
+                         "over turgor and cohesion")
     page = Page(0.55 * WIDTH, HEIGHT, options)
     axes = page.chart(9, 6, page.size[0] - 18, page.size[1] - 12)
     walls = line.column("walls")
@@ -52,8 +50,8 @@ def _path(source, line, of_map, options):
 
 @styled
 def draw(source, state=None, field=None, strip=False, film=False, map=None, **options):
-    """Charts against time; state: with the cells of this state; film: a list of pages, one for each state whose cells the
-    file has; strip: up to eight of them beside each other; map: the path of the tissue over this map of failure."""
+    """Charts against time; state: with the cells of this state; film: a list of pages, one for each state whose cells
+    the file has; strip: up to eight of them beside each other; map: the path of the tissue over this map of failure."""
     if source.keys is None or not len(source.keys):
         raise InputError(f"{source.path}: holds no states")
     line = TimeLine(source, len(source.keys))
@@ -73,7 +71,8 @@ def draw(source, state=None, field=None, strip=False, film=False, map=None, **op
         states = states[-1:]
     if strip:
         states = [states[i] for i in chosen(len(states), len(states) - 1)]
-    cells = [Cells(source, "mesh", f"fields/{source.keys[k]}", name, source.parts, source.responses.F[k]) for k in states]
+    F = source.responses.F
+    cells = [Cells(source, "mesh", f"fields/{source.keys[k]}", name, source.parts, F[k]) for k in states]
     frame = Frame(cells, label, options)
     key = lambda page, view, right: frame.key(page, view, source.apothem * 1e6, right, undeformed=False)
     if strip:

@@ -26,8 +26,8 @@ class Source(Result):
             raise InputError(f"{self.path}: {name} is damaged: it holds no numbers")
         size = int(np.prod(values.shape[1:]))
         if len(values) == 0 or (rows is not None and len(values) != rows) or (columns is not None and size != columns):
-            raise InputError(f"{self.path}: {name} is damaged: {len(values)} rows of {size} numbers do not fit the rest "
-                             "of the file")
+            raise InputError(f"{self.path}: {name} is damaged: {len(values)} rows of {size} numbers do not fit the "
+                             "rest of the file")
         if finite and not np.isfinite(values).all():
             raise InputError(f"{self.path}: {name}: the numbers of the file cannot be drawn: some are not finite")
         return values.reshape(len(values), size) if columns is not None and columns > 1 else values

@@ -53,8 +53,8 @@ def _cells(source, k, field):
 
 @styled
 def draw(source, state=None, field=None, strip=False, **options):
-    """The tissue at a state, coloured by `field` (wall_stress, fibre_stretch), and the effective stress over the states;
-    strip: up to eight states beside each other."""
+    """The tissue at a state, coloured by `field` (wall_stress, fibre_stretch), and the effective stress over the
+    states; strip: up to eight states beside each other."""
     name, label = field_of(field)
     k, highest = _choose(source, state)
     if strip:
@@ -76,7 +76,7 @@ def draw(source, state=None, field=None, strip=False, **options):
 
 
 def _strip(source, name, label, highest, options):
-    r, load = source.responses, curves.LoadAxis(source.responses, source.keys)
+    load = curves.LoadAxis(source.responses, source.keys)
     states = [k for k in range(len(source.keys)) if source.has(f"fields/{source.keys[k]}/x")]
     states = [states[i] for i in chosen(len(states), int(np.searchsorted(states, highest or 0)))]
     cells = [_cells(source, k, name) for k in states]

@@ -1,8 +1,8 @@
 """Pictures of response databases: a slice through the table, or the records in strain space.
 
 Slice. F = U has principal logarithmic strains e1, e2 along two fixed axes. With n = (cos a, sin a) along the first,
-U = exp(e1) n n + exp(e2) m m, m normal to n. A node with mean strain m, isochoric strain r and first axis at the angle b
-lies r sin 2(b - a) out of the slice and is drawn at e1, e2 = m +- r cos 2(b - a). Rotations and mirrors of a regular
+U = exp(e1) n n + exp(e2) m m, m normal to n. A node with mean strain m, isochoric strain r and first axis at the angle
+b lies r sin 2(b - a) out of the slice and is drawn at e1, e2 = m +- r cos 2(b - a). Rotations and mirrors of a regular
 lattice give six images of it.
 """
 import numpy as np
@@ -54,7 +54,8 @@ class Slice:
 
     def __init__(self, source, database, angle, suction, turgor, accuracy):
         tissue, self.parts = source.tissue, source.parts
-        self.orientation, self.angle = float(tissue.get("orientation", 0)), 0 if angle is None else quantity(angle, "angle")
+        self.orientation = float(tissue.get("orientation", 0))
+        self.angle = 0 if angle is None else quantity(angle, "angle")
         self.accuracy = float(source.file.attrs["accuracy"]) if accuracy is None else float(accuracy)
         self.source, self.unit = source, source.stress_unit
         self.level = database.levels
@@ -72,7 +73,8 @@ class Slice:
         if suction is not None and not self.parts:
             raise InputError(f"--suction {suction}: bonded tissue has none; give its --turgor")
         if turgor is not None and self.parts:
-            raise InputError(f"--turgor {turgor}: slices of contact tissue have a --suction, which is turgor + cohesion")
+            raise InputError(f"--turgor {turgor}: slices of contact tissue have a --suction, which is turgor + "
+                             "cohesion")
         text, own = suction if self.parts else turgor, self.suction[self.nodes]
         wanted, nodes = (own.min() + own.max()) / 2, self.nodes[self.level[self.nodes] == 0]
         if text is not None:
@@ -106,7 +108,8 @@ class Slice:
         images = 6 if same[0] == same[1] and "cell" not in tissue else 1
         chosen = self.nodes[np.abs(self.suction[self.nodes] - self.node_suction) <= ROUNDING * self.unit]
         strain, angle = principal(r.F[chosen])
-        kind = np.where(~solved(r[chosen]), FAILED, np.where(r.stable[chosen] & (r.branch[chosen] == 0), SOUND, ELSEWHERE))
+        sound = r.stable[chosen] & (r.branch[chosen] == 0)
+        kind = np.where(~solved(r[chosen]), FAILED, np.where(sound, SOUND, ELSEWHERE))
         mean, shape = strain.mean(axis=1), (strain[:, 0] - strain[:, 1]) / 2
         self.at, self.at_level, self.kind = np.empty((0, 2)), np.empty(0, int), np.empty(0, int)
         for i in range(images):
@@ -152,8 +155,9 @@ def _hatch(axes, s, inside, look, points):
     boxes = []
     for row in np.flatnonzero(inside.any(axis=1)):
         ends = np.flatnonzero(np.diff(np.concatenate([[0], inside[row].astype(int), [0]])))
-        boxes += [[(edges[a], edges[row]), (edges[b], edges[row]), (edges[b], edges[row + 1]), (edges[a], edges[row + 1])]
-                  for a, b in ends.reshape(-1, 2)]
+        low, high = edges[row:row + 2]
+        for left, right in edges[ends].reshape(-1, 2):
+            boxes.append([(left, low), (right, low), (right, high), (left, high)])
     clip = Path.make_compound_path(*(Path(box + box[:1], closed=True) for box in boxes))
     width = s.high - s.low
     start = np.arange(s.low - width, s.high, width * (7 if len(hatch) < 5 else 4.5) / points)
@@ -210,8 +214,8 @@ def _legend(page, s, width):
     if s.box:
         handles.append(Patch(facecolor="none", edgecolor=INK, linewidth=0.7, linestyle=(0, (3.2, 1.8))))
         labels.append("box of the scene's sample")
-    page.legend(handles, labels, loc="upper left", bbox_to_anchor=(7 / page.size[0], 1 - 20 / page.size[1]), ncols=columns(labels, width),
-                handler_map={tuple: HandlerTuple(None, pad=0.6)})
+    page.legend(handles, labels, loc="upper left", bbox_to_anchor=(7 / page.size[0], 1 - 20 / page.size[1]),
+                ncols=columns(labels, width), handler_map={tuple: HandlerTuple(None, pad=0.6)})
 
 
 def _glyph(page, s):
@@ -323,5 +327,5 @@ def refuse(path, options):
     """InputError where an option chooses a slice of what has no table."""
     for name in SLICE_OPTIONS:
         if options.get(name) is not None:
-            raise InputError(f"--{name} {options[name]}: chooses a slice through the table of a database; what is drawn of "
-                             f"{path} has none")
+            raise InputError(f"--{name} {options[name]}: chooses a slice through the table of a database; what is "
+                             f"drawn of {path} has none")

@@ -1,7 +1,6 @@
 """Quantities of a process against time, and pages that show them beside a state."""
 import numpy as np
 
-from .. import InputError
 from .page import DASHES, EVENT, LINES, NOW, WIDTH, Page, legend, limits, mark, number, settle
 
 TIME_HEIGHT = 350  #: of a page with charts, points
@@ -25,7 +24,7 @@ class TimeLine:
         return self.source.array(f"process/{name}", self.n, 1).ravel().astype(float)
 
     def group(self, name, shows):
-        """Values and labels of those arrays of the group that `shows` selects; a wall law has some of the parameters."""
+        """Values and labels of those arrays of the group that `shows` selects."""
         found = []
         for member in self.source.file.get(f"process/{name}", ()):
             values = self.column(f"{name}/{member}")

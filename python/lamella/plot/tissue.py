@@ -159,8 +159,8 @@ def draw(view, cells, norm, gaps, pressure, undeformed=True):
         if thin:
             _widen(axes, cells, thickness, norm, shift, PALE if fade else FIELD)
         else:
-            axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor="none", edgecolor=ink, linewidth=min(0.4, line / 2),
-                                     zorder=2))
+            axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor="none", edgecolor=ink, zorder=2,
+                                      linewidth=min(0.4, line / 2)))
         axes.add_artist(PathPatch(_shifted(outer, shift), facecolor="none", edgecolor=ink, zorder=2.1,
                                  linewidth=min(line, 0.5 if fade else 0.9)))
     if undeformed:
@@ -189,8 +189,8 @@ def _widen(axes, cells, thickness, norm, shift, cmap):
         if width >= THINNEST_WALL:
             continue
         edges = [_curve(edge, cells.x + shift) for edge in loop]
-        lines = LineCollection(edges, colors=cmap(norm(mean[loop[:, 3]])), linewidths=2 * THINNEST_WALL, capstyle="round",
-                               zorder=1.9)
+        lines = LineCollection(edges, colors=cmap(norm(mean[loop[:, 3]])), linewidths=2 * THINNEST_WALL,
+                               capstyle="round", zorder=1.9)
         axes.add_artist(lines)
         lines.set_clip_path(PathPatch(meshes.path(loop, cells.x + shift, closed=True), transform=axes.transData))
 
@@ -238,7 +238,7 @@ def _gaps(view, i, shift, gaps):
 
 
 def _stretch(view, i):
-    """Points on the page between the sides of the lamella at each sample; 0: it lies between walls that are not apart."""
+    """Points on the page between the sides of the lamella at each sample; 0: it is between walls that are not apart."""
     with np.errstate(invalid="ignore"):
         return np.where(i.gap > VISIBLE_GAP, np.linalg.norm(i.across - i.start, axis=2) * view.scale, 0)
 
@@ -299,7 +299,8 @@ class Key:
         longest = SCALE_BAR / points
         power = 10.0 ** np.floor(np.log10(longest))
         length = power * (5 if longest >= 5 * power else 2 if longest >= 2 * power else 1)
-        self.axes.plot([self.x, self.x + length * points], [self.y, self.y], color=INK, linewidth=2, solid_capstyle="butt")
+        self.axes.plot([self.x, self.x + length * points], [self.y, self.y], color=INK, linewidth=2,
+                       solid_capstyle="butt")
         self.x += length * points + 4
         self.x += self.text(f"{length:g} {unit}") + 10
 
@@ -327,10 +328,11 @@ class Key:
         if self.x + 58 + 42 + 30 > self.right:
             self.row()
         self.x += self.text("lamella: intact") + 4
-        shades = Rectangle((self.x, self.y - height / 2), length, height, facecolor="none", edgecolor=DARK, linewidth=0.4)
+        frame = Rectangle((self.x, self.y - height / 2), length, height, facecolor="none", edgecolor=DARK,
+                          linewidth=0.4)
         self.axes.imshow([np.linspace(0, 1, 64)], cmap=LAMELLA, norm=Normalize(0, 1), aspect="auto", zorder=1,
                          extent=(self.x, self.x + length, self.y + height / 2, self.y - height / 2))
-        self.axes.add_patch(shades)
+        self.axes.add_patch(frame)
         self.axes.set(xlim=(0, self.page.size[0]), ylim=(self.page.size[1], 0))
         self.x += length + 4
         self.text("broken")

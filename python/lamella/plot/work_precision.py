@@ -1,7 +1,7 @@
 """Work-precision diagrams: error against core-seconds, both logarithmic, a panel for each kind of error.
 
-A line joins the settings of one family; what failed is not there. A point has its setting beside it where there is room:
-the best settings first, then the planned one.
+A line joins the settings of one family; what failed is not there. A point has its setting beside it where there is
+room: the best settings first, then the planned one.
 """
 import json
 
@@ -17,7 +17,8 @@ LABEL = 6.0
 KINDS = {"P": ("error of $P$ (%)", 100), "tangent": ("error of the tangent (%)", 100), "opening": ("", 1),
          "macro": ("error of reaction and work (%)", 100)}
 FAMILIES = {"strategy": ("strategy", 3, "D"), "sharpness": ("law of contact", 4, "s"),
-            "cells": ("cells per period", 5, "^"), "tolerance": ("Newton tolerance", 6, "v"), "database": ("table", 6, "D")}
+            "cells": ("cells per period", 5, "^"), "tolerance": ("Newton tolerance", 6, "v"),
+            "database": ("table", 6, "D")}
 NOTE = ("Beside a point: elements along a face, or its setting.", "Ring: as the scene and the planner say.",
         "Thick grey line: nothing measured has less error in less time.",
         "Grey area: below ten times the error of the reference,", "which is not ranked.",
@@ -91,7 +92,8 @@ def _panel(page, axes, data, kind, label, scale, looks):
     for _, time, error, s, colour in sorted(labels, key=lambda one: one[0]):
         near(page, axes, time, error, s.get("mark", s["setting"]), color=colour, size=LABEL,
              bbox={"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.5})
-    direct = next((s for s in settings if kind == "macro" and s["family"] == "macro" and s["planned"] and s["runs"]), None)
+    bodies = [s for s in settings if kind == "macro" and s["family"] == "macro"]
+    direct = next((s for s in bodies if s["planned"] and s["runs"]), None)
     if direct:
         mark(page, axes, direct["core_seconds"]["median"], "direct (the reference here)", INK, "-")
     for low, high, widen in ((*axes.get_xlim(), axes.set_xlim), (*axes.get_ylim(), axes.set_ylim)):  # whole decades
@@ -115,7 +117,7 @@ def draw(path, **options):
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: is not of lamella tradeoff: {error}") from None
     kinds = [kind for kind in KINDS if _points(settings, kind, 1, 1e-300)]
-    looks, meshes = {}, 0
+    looks = {}
     for s in settings:
         group = _group(s)
         if s["runs"] and group not in looks and group != ("macro", "direct"):
@@ -129,11 +131,11 @@ def draw(path, **options):
         label, scale = KINDS[kind]
         label = label or f"error of the {data.get('volume', 'opening')} fraction"
         _panel(page, page.chart(*place(k), wide, PANEL), data, kind, label, scale, looks)
-    page.legend([Line2D([], [], linewidth=0.7, markersize=4.2, label=label, **style) for label, style in looks.values()],
-                [label for label, _ in looks.values()], loc="upper left", ncols=4,
+    lines = [Line2D([], [], linewidth=0.7, markersize=4.2, **style) for _, style in looks.values()]
+    page.legend(lines, [label for label, _ in looks.values()], loc="upper left", ncols=4,
                 bbox_to_anchor=(MARGIN / width, 1 - MARGIN / page.size[1] / 2))
     x, y = place(len(kinds)) if len(kinds) % 2 else (MARGIN, below)
     for k, note in enumerate(NOTE):
-        page.text((x + 30 * (len(kinds) % 2)) / width, 1 - (y + 1.6 * SMALL * (k + 0.5)) / page.size[1], note, va="center",
-                  size=SMALL)
+        page.text((x + 30 * (len(kinds) % 2)) / width, 1 - (y + 1.6 * SMALL * (k + 0.5)) / page.size[1], note,
+                  va="center", size=SMALL)
     return settle(page)
