@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets Lamella up on Debian 12 or 13.
-#   ./setup.sh            install what is missing, build the program, run the main job and show its result
+#   ./setup.sh            install what is missing, build the program, show its Python package to /usr/bin/python3, run the
+#                         main job and show its result
 #   ./setup.sh test       install what is missing, build everything, run the tests
 #   ./setup.sh deps       only install what is missing
 #   ./setup.sh notebook   install Jupyter's notebook, too, and open those of docs/notebooks
@@ -49,6 +50,14 @@ build() { # PRESET DIRECTORY [OPTIONS]
   cmake --build "${@:2}"
 }
 
+# A line in the user's own packages, as pip writes it for a source tree that stays where it is.
+install_package() {
+  local packages
+  packages=$(/usr/bin/python3 -m site --user-site) || true
+  mkdir -p "$packages"
+  echo "$PWD/python" >"$packages/lamella.pth"
+}
+
 # The one that the system's alternatives choose; they are not touched, another program may need them as they are.
 report_blas() {
   local blas
@@ -78,6 +87,7 @@ case "${1-run}" in
   run)
     install_missing "${packages[@]}" "${test_packages[@]}"
     build release build --target lamella lamella_program lamella_shared lamella_umat
+    install_package
     main_job
     ;;
   test)
@@ -88,7 +98,8 @@ case "${1-run}" in
   notebook)
     install_missing "${packages[@]}" python3-scipy python3-ipykernel jupyter-notebook
     build release build --target lamella lamella_program lamella_shared
-    PYTHONPATH=$PWD/python exec jupyter notebook --notebook-dir=docs/notebooks
+    install_package
+    exec jupyter notebook --notebook-dir=docs/notebooks
     ;;
   partners)
     install_missing "${packages[@]}"
