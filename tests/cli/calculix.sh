@@ -1,4 +1,4 @@
-# CalculiX with the tissue of integrations/calculix: a patch test, uniform states and history as `lamella` has them, the
+# slow: CalculiX with the tissue of integrations/calculix: a patch test, uniform states and history as `lamella` has them, the
 # block of docs/reference/calculix.md as `fe2` has it, the same with any number of threads; what it cannot do is refused.
 # CCX: a CalculiX with external behaviours, as integrations/calculix/build_ccx.sh makes it.
 . "$(dirname "$0")/common.sh"

@@ -1,4 +1,4 @@
-# Tissue in FEniCSx: forces of blocks are those of `lamella fe2`, states without response are an error and change nothing.
+# slow: Tissue in FEniCSx: forces of blocks are those of `lamella fe2`, states without response are an error and change nothing.
 . "$(dirname "$0")/common.sh"
 
 python=/usr/bin/python3

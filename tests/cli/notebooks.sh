@@ -1,4 +1,4 @@
-# The notebooks of docs/notebooks run, and say what they show; LAMELLA_UPDATE_DOCS=1 writes what they say now.
+# slow: The notebooks of docs/notebooks run, and say what they show; LAMELLA_UPDATE_DOCS=1 writes what they say now.
 . "$(dirname "$0")/common.sh"
 
 python=/usr/bin/python3

@@ -28,7 +28,6 @@ grep -q '^[0-9]*,lamella_normal,[0-9]' a.csv || fail "the table has no event: $(
 expect 0 "$lamella" plot --dpi 40 a.h5 -o a.svg
 grep -q svg a.svg || fail "no picture"
 expect 0 "$lamella" plot --dpi 40 a.h5 --state 0 -o s.svg
-expect 0 "$lamella" plot --dpi 40 a.h5 --film -o film.pdf
 expect 0 "$lamella" plot --dpi 40 a.h5 --film -o film.svg
 [ "$(ls film-*.svg | wc -l)" -ge 5 ] || fail "numbered frames: $(ls)"
 expect 2 -e '--frames N keeps them' "$lamella" plot --dpi 40 a.h5 --state 1 -o s.svg

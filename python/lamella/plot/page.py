@@ -109,9 +109,11 @@ class Page(Figure):
 
 
 def check_path(path):
-    """InputError unless the name ends as that of a picture."""
+    """InputError unless the name ends as that of a picture, OSError unless its folder is there."""
     if Path(path).suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"{path}: a picture's name must end in .png, .svg or .pdf")
+    if not Path(path).parent.is_dir():
+        raise FileNotFoundError(f"{path}: cannot write the picture: No such file or directory")
 
 
 def write(path, content):
