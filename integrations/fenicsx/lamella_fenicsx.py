@@ -104,6 +104,8 @@ class Tissue:
         self._P, self.P = self._field(degree, (2, 2))  #: P of the last update, Pa, as UFL sees it
         self._A, self.tangent = self._field(degree, (2, 2, 2, 2))  #: dP_ij/dF_kl, Pa
         queries = isinstance(law, lamella.Database)
+        if not queries:
+            law.scene.check_material()
         self._law = _Queries(law, accuracy) if queries else _Solves(law, self.shape[0] * self.shape[1])
         self.stress_unit = law.stress_unit if queries else law.scene.stress_unit  #: C1 + C2 of the walls, Pa
         self.responses = None  #: of the last update, lamella.Responses [cells, points of a cell]

@@ -56,6 +56,7 @@ class Tissue:
             text = Path(settings["scene"]).read_text(encoding="utf-8")
         self.scene = lamella.Scene(self.path or settings["scene"], text=text)
         scene = lamella.scene_dict(text)
+        self.scene.check_material()
         at_rest = lamella.Scene({"version": scene["version"], "rve": scene["rve"], "load": [{"F": [[1, 0], [0, 1]]}]})
         self.turgor, self.cohesion = at_rest.turgor[0], at_rest.cohesion[0]
 
@@ -86,6 +87,11 @@ def _capital(macro_data):
     return "Strains1to3" in macro_data
 
 
+def _scalar(macro_data, name):
+    """What the macroscale solver gives, with a capital or without; else the scene's."""
+    return macro_data.get(name, macro_data.get(name.capitalize(), getattr(tissue(), name)))
+
+
 def _load(macro_data):
     """F, turgor and cohesion of what the macroscale solver gives."""
     names = ["strains1to3", "strains4to6", "strains7to9"]
@@ -98,7 +104,7 @@ def _load(macro_data):
     F = np.array([macro_data[name] for name in names], dtype=float)
     if F.shape != (3, 3):
         raise lamella.InputError(f"{names[0]}: has not 3 numbers; the mesh of preCICE must have 3 dimensions")
-    return F, macro_data.get("turgor", tissue().turgor), macro_data.get("cohesion", tissue().cohesion)
+    return F, _scalar(macro_data, "turgor"), _scalar(macro_data, "cohesion")
 
 
 def _output(r, capital, solved):

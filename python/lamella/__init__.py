@@ -112,10 +112,13 @@ class Responses:
         raise KeyError(name)
 
 
-def scene_dict(scene: str | os.PathLike[str] | dict[str, Any]) -> dict[str, Any]:
-    """A scene as nested dictionaries: of a path, of a text (with a line break in it), or a dictionary as it is."""
+def scene_dict(scene: "str | os.PathLike[str] | dict[str, Any] | Scene") -> dict[str, Any]:
+    """A scene as nested dictionaries: of a path, of a text (with a line break in it), of a Scene, or a dictionary as it
+    is."""
     if isinstance(scene, dict):
         return scene
+    if isinstance(scene, Scene):
+        scene = scene.path if scene.text is None else scene.text + "\n"
     import yaml  # type: ignore[import]  # only where scenes are taken apart
 
     class Loader(yaml.SafeLoader):
@@ -150,6 +153,11 @@ class Scene:
         call(library.LamBindSceneRead, self.path.encode(), ffi.NULL if text is None else text.encode(), handle)
         self._handle = own(handle[0], library.LamBindSceneDestroy)
         self.apothem, self.stress_unit, *self.pressures = _numbers(library.LamBindSceneNumbers, self._handle, 4)
+
+    def check_material(self) -> None:
+        """Raises InputError unless a host program can take the tissue as its material: a patch is no material point, and
+        the turgor of sealed cells is not prescribed."""
+        call(library.LamBindSceneIsMaterial, self._handle)
 
     def __len__(self) -> int:
         """Number of states of the block `load`."""

@@ -3,6 +3,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import warnings
@@ -67,7 +68,8 @@ def run(command: str, *arguments: Any, ranks: int = 1) -> Run:
         try:
             out, err = child.communicate()
         except KeyboardInterrupt:
-            child.wait()  # it has the signal, too
+            child.send_signal(signal.SIGINT)  # from a terminal it has it already; the third would end it at once
+            child.communicate()
             raise
     status = child.returncode
     if status in (USAGE, INPUT):
@@ -82,16 +84,17 @@ def run(command: str, *arguments: Any, ranks: int = 1) -> Run:
 
 @contextmanager
 def _path_of(scene: SceneLike) -> Iterator[str]:
-    """The scene as a file: its own, or one for as long as it is needed."""
+    """The scene as a file: its own, or for as long as it is needed one beside the files that it names."""
     if isinstance(scene, dict):
         scene = Scene(scene)
     if not isinstance(scene, Scene) or scene.text is None:
         yield scene.path if isinstance(scene, Scene) else os.fspath(scene)
         return
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "scene.yaml"
-        path.write_text(scene.text, encoding="utf-8")
-        yield str(path)
+    folder = os.path.dirname(scene.path) or "."
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml", dir=folder, encoding="utf-8") as file:
+        file.write(scene.text)
+        file.flush()
+        yield file.name
 
 
 def study(command: str, scene: SceneLike, ranks: int, **options: Any) -> None:

@@ -53,13 +53,22 @@ def _set(scene: Any, key: str, value: Any) -> None:
     *path, last = key.split(".")
     block = scene
     for part in path:
-        if isinstance(block, list):
-            block = block[int(part)]
-        elif isinstance(block, dict) and part in block:
-            block = block[part]
-        else:
-            raise InputError(f"sweep: the scene has no block {part} of the key {key}")
-    block[int(last) if isinstance(block, list) else last] = value
+        block = block[_at(block, part, key)]
+    block[_at(block, last, key) if isinstance(block, list) else last] = value
+
+
+def _at(block: Any, part: str, key: str) -> Any:
+    """Where a part of the key is in its block."""
+    if isinstance(block, list) and part.isdecimal() and int(part) < len(block):
+        return int(part)
+    if isinstance(block, dict) and part in block:
+        return part
+    raise InputError(f"sweep: the scene has no block {part} of the key {key}")
+
+
+def _plain(value: Any) -> Any:
+    """Numbers of NumPy as those of Python."""
+    return value.tolist()
 
 
 def _solve_here(jobs: list[Job]) -> Iterator[np.ndarray]:
@@ -108,7 +117,7 @@ def _solve(jobs: list[Job], processes: int | None) -> np.ndarray:
     return np.stack(solved)
 
 
-def sweep(scene: str | os.PathLike[str] | dict[str, Any], values: dict[str, Sequence[Any]],
+def sweep(scene: SceneLike, values: dict[str, Sequence[Any]],
           processes: int | None = None) -> Sweep:
     """Solves a scene along its block `load`, as `lamella rve`, for all combinations of values of its keys.
 
@@ -121,7 +130,7 @@ def sweep(scene: str | os.PathLike[str] | dict[str, Any], values: dict[str, Sequ
         varied = json.loads(json.dumps(base))
         for key, value in zip(values, point):
             _set(varied, key, value)
-        jobs.append(("sweep", json.dumps(varied), {}))
+        jobs.append(("sweep", json.dumps(varied, default=_plain), {}))
     if not jobs:
         raise InputError("sweep: a key has no values")
     array = _solve(jobs, processes)
@@ -138,8 +147,8 @@ def solve(scene: SceneLike, F: ArrayLike, turgor: ArrayLike | None = None, cohes
     """
     scene = scene if isinstance(scene, Scene) else Scene(scene)
     loads, stresses = rows_of(scene.pressures, F, turgor, cohesion, P)
-    if loads.ndim not in (2, 3):
-        raise InputError(f"solve: states of the shape {loads.shape[:-1]}: [states] or [paths, states]")
+    if loads.ndim not in (2, 3) or not loads.size:
+        raise InputError(f"solve: states of the shape {loads.shape[:-1]}: [states] or [paths, states], at least one")
     paths = loads.reshape(len(loads), -1, 11)
     jobs: list[Job] = []
     for k, path in enumerate(paths):

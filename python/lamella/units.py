@@ -2,7 +2,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ._library import call, ffi, library
+from ._library import InputError, call, ffi, library
 
 DIMENSIONS = ("length", "stress", "angle", "time", "temperature")
 
@@ -11,6 +11,8 @@ def quantity(text: str, dimension: str | None = None) -> float:
     """A quantity as scenes have it in SI units: quantity("0.02 MPa") is 20000.0, quantity("4 degC") 277.15. dimension:
     length, stress, angle, time or temperature; None: any that scenes have. InputError: its unit is missing, unknown or
     of another dimension."""
+    if dimension is not None and dimension not in DIMENSIONS:
+        raise InputError(f"quantity: the dimension {dimension} is none of {', '.join(DIMENSIONS)}")
     value = ffi.new("double *")
     number = -1 if dimension is None else DIMENSIONS.index(dimension)
     call(library.LamBindQuantity, str(text).encode(), number, value)

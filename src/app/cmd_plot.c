@@ -54,14 +54,15 @@ void LamPlotVisitFields(void (*visit)(void *ctx, const char name[]), void *ctx)
     if (m->count == 1 && (m->type == LAM_MEMBER_REAL || m->type == LAM_MEMBER_INT)) visit(ctx, m->name);
 }
 
-/* Replaces FILE.h5 by FILE.png. */
+/* Replaces the ending of the file by .png. */
 static PetscErrorCode DefaultOutput(const char input[], size_t size, char output[])
 {
-  const size_t length = strlen(input), name = length > 3 && !strcmp(input + length - 3, ".h5") ? length - 3 : length;
+  const char *slash = strrchr(input, '/'), *dot = strrchr(slash ? slash : input, '.');
+  const size_t length = dot ? (size_t)(dot - input) : strlen(input);
 
   PetscFunctionBeginUser;
-  PetscCheck(name + 5 <= size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the name is too long", input);
-  snprintf(output, size, "%.*s.png", (int)name, input);
+  PetscCheck(length + 5 <= size, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: the name is too long", input);
+  snprintf(output, size, "%.*s.png", (int)length, input);
   PetscFunctionReturn(0);
 }
 
@@ -167,6 +168,10 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
                             "                    [--x LOW,HIGH] [--y LOW,HIGH] [--dpi N] [--quiet]",
                             "Draws what the file holds, with Python and its package matplotlib.", options, 1, &input,
                             &done, exit_status));
-  if (!done) PetscCall(Draw(input, &r, exit_status));
+  if (done) PetscFunctionReturn(0);
+  if (r.title && r.no_title)
+    (void)LamUsageError("plot", exit_status, "--title and --no-title: one of them");
+  else
+    PetscCall(Draw(input, &r, exit_status));
   PetscFunctionReturn(0);
 }

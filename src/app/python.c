@@ -15,12 +15,17 @@
 /* A package that is missing is found when it is imported, here or where a file is opened. */
 static const char Program[] =
     "import sys\n"
+    "sys.path = [sys.argv[2]] * bool(sys.argv[2]) + sys.path[1:]\n" /* its own folder, not that where it is started */
     "try:\n"
     "    from lamella.plot.__main__ import main\n"
     "    sys.exit(main(sys.argv[1]))\n"
     "except ModuleNotFoundError as error:\n"
-    "    print(f'lamella: pictures need the Python package {error.name} '\n"
-    "          f'(Debian: python3-{error.name})', file=sys.stderr)\n"
+    "    if error.name.startswith('lamella'):\n"
+    "        print('lamella: pictures need the Python package lamella, the folder python of the sources', "
+    "file=sys.stderr)\n"
+    "    else:\n"
+    "        print(f'lamella: pictures need the Python package {error.name} (Debian: python3-{error.name})', "
+    "file=sys.stderr)\n"
     "except ImportError as error:\n"
     "    print(f'lamella: pictures need the Python package lamella: {error}', file=sys.stderr)\n"
     "sys.exit(4)\n";
@@ -36,29 +41,30 @@ static void ProgramFolder(char folder[PETSC_MAX_PATH_LEN])
   if (slash) *slash = '\0';
 }
 
-/* Sets a variable unless the user has, to the first of these folders that has the file. */
-static void SetFolder(const char variable[], const char program[], const char *const folders[], const char file[])
+/* The first of these folders, from that of the program, that has the file; "" if none has. */
+static void FindFolder(const char program[], const char *const folders[], const char file[],
+                       char folder[PETSC_MAX_PATH_LEN])
 {
-  char path[PETSC_MAX_PATH_LEN + 64];
+  char path[2 * PETSC_MAX_PATH_LEN];
 
-  for (int i = 0; folders[i] && !getenv(variable); i++) {
+  folder[0] = '\0';
+  for (int i = 0; folders[i] && !folder[0]; i++) {
     snprintf(path, sizeof(path), "%s/%s/%s", program, folders[i], file);
-    if (access(path, R_OK)) continue;
-    path[strlen(path) - strlen(file) - 1] = '\0';
-    setenv(variable, path, 1);
+    if (!access(path, R_OK)) snprintf(folder, PETSC_MAX_PATH_LEN, "%.3000s/%s", program, folders[i]);
   }
 }
 
-/* Where the package is: beside the program, or where it is installed with it. An installed one has its library inside.
+/* Where the package is: beside the program, or where it is installed with it; an installed one has its library inside.
  */
-static void FindPackage(void)
+static void FindPackage(char package[PETSC_MAX_PATH_LEN])
 {
   static const char *const packages[] = {"python", "../share/lamella/python", NULL}, *const libraries[] = {".", NULL};
-  char folder[PETSC_MAX_PATH_LEN];
+  char program[PETSC_MAX_PATH_LEN], library[PETSC_MAX_PATH_LEN];
 
-  ProgramFolder(folder);
-  SetFolder("LAMELLA_LIBRARY", folder, libraries, "liblamella.so");
-  SetFolder("PYTHONPATH", folder, packages, "lamella/plot/__main__.py");
+  ProgramFolder(program);
+  FindFolder(program, packages, "lamella/plot/__main__.py", package);
+  FindFolder(program, libraries, "liblamella.so", library);
+  if (library[0]) setenv("LAMELLA_LIBRARY", library, 0);
 }
 
 /* The child is no rank of this job. */
@@ -97,15 +103,15 @@ static int Await(pid_t child)
 PetscErrorCode LamPythonDraw(json_t *request, int *exit_status)
 {
   const char *named = getenv("LAMELLA_PYTHON"), *python = named && *named ? named : PYTHON;
-  char *text = json_dumps(request, 0), **environment;
-  char *const argv[] = {(char *)python, "-c", (char *)Program, text, NULL};
+  char *text = json_dumps(request, 0), **environment, package[PETSC_MAX_PATH_LEN];
+  char *const argv[] = {(char *)python, "-c", (char *)Program, text, package, NULL};
   pid_t child;
   int failed;
 
   PetscFunctionBeginUser;
   json_decref(request);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "an argument is not in UTF-8");
-  FindPackage();
+  FindPackage(package);
   PetscCall(Environment(&environment));
   fflush(stdout);
   failed = posix_spawnp(&child, python, NULL, NULL, argv, environment);

@@ -2,7 +2,7 @@
 
     import lamella
     page = lamella.plot.draw("shear.h5", field="fibre_stretch")
-    page.axes[0].set_title("my tissue")
+    page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
 `draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map` and `tradeoff` say which it is. All take
@@ -21,11 +21,45 @@ from .read import Source
 __all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
 _OPTIONS = {"title", "size", "range", "x", "y"}
+_CHOICES = {"state", "field", "strip", "film", "map", "angle", "suction", "turgor", "accuracy"}
+
+
+class _Options(dict):
+    """Options of a page that tell which of them the drawing has asked for."""
+
+    def __init__(self, options):
+        super().__init__(options)
+        self.asked = set()
+
+    def get(self, name, default=None):
+        self.asked.add(name)
+        return super().get(name, default)
+
+
+def _refuse_unused(path, options):
+    for name in sorted(set(options) - options.asked):
+        raise InputError(f"--{name} {options[name]}: this picture of {path} has nothing that it would change")
 
 
 def _draw(kind, path, options):
+    """Each option is of use, or an error."""
+    for name in options:
+        if name not in _OPTIONS | _CHOICES:
+            raise InputError(f"{name}: pictures have no such option; they have {', '.join(sorted(_OPTIONS | _CHOICES))}")
+    options = {name: value for name, value in options.items()
+               if not (value is None or (value is False and name != "title"))}
+    page = _Options({name: value for name, value in options.items() if name in _OPTIONS})
+    options = {name: value for name, value in options.items() if name in _CHOICES}
+    drawn = _page(kind, path, options, page)
+    _refuse_unused(path, page)
+    return drawn
+
+
+def _page(kind, path, options, page):
     if kind == "tradeoff":
-        return import_module(".work_precision", __name__).draw(path, **options)
+        if options:
+            raise InputError(f"--{next(iter(options))}: a work-precision diagram is drawn as a whole")
+        return import_module(".work_precision", __name__).draw(path, page)
     with Source(path) as source:
         module = _MODULES.get(source.kind)
         if module is None or kind not in (None, source.kind):
@@ -37,9 +71,7 @@ def _draw(kind, path, options):
         for name, kinds in (("strip", ("rve", "fe2", "process")), ("film", ("fe2", "process")), ("map", ("process",))):
             if options.get(name) and source.kind not in kinds:
                 raise InputError(f"{path}: is of kind \"{source.kind}\"; --{name} draws files of {', '.join(kinds)}")
-        options = {name: value for name, value in options.items()
-                   if not (value is None or (value is False and name != "title"))}
-        drawn = import_module(f".{module}", __name__).draw(source, **options)
+        drawn = import_module(f".{module}", __name__).draw(source, page, **options)
         return drawn if isinstance(drawn, Page) else list(drawn)
 
 

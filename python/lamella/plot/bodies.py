@@ -8,7 +8,7 @@ from .. import InputError
 from . import mesh as meshes
 from .page import (DARK, DASHES, FIELD, HEIGHT, LINES, RED, ROW, SMALL, WIDTH, Page, Range, bar, bar_width, legend,
                    limits, mark, ratio, settle, styled)
-from .strip import chosen, strip as draw_strip
+from .strip import alone, chosen, strip as draw_strip
 from .timeline import TimeLine, charts, film_page
 from .tissue import FIELDS as WALL_FIELDS, Cells, Frame, Key, View
 
@@ -159,7 +159,7 @@ class Body:
             return self.reactions.peak
         if state == "last":
             return len(self.steps) - 1
-        found = np.flatnonzero(self.steps == int(state))
+        found = np.flatnonzero(self.steps.astype(str) == str(state))
         if not len(found):
             raise InputError(f"--state {state}: {self.source.path} holds steps {self.steps[0]} to {self.steps[-1]}")
         return int(found[0])
@@ -189,7 +189,7 @@ class Body:
     @property
     def title(self):
         if self.times:
-            return self.times.title(self.at)
+            return f"Step {self.steps[self.at]}:  {self.times.title(self.at)}"
         inflated = "" if self.steps[self.at] else ", inflated"
         peak = ", peak" if self.at == self.reactions.peak else ""
         return f"Step {self.steps[self.at]}{inflated}{peak}:  load factor {ratio(self.reactions.load[self.at])}"
@@ -365,7 +365,7 @@ def _frame(body, rows, options):
 
 
 @styled
-def draw(source, state=None, field=None, strip=False, film=False, **options):
+def draw(source, options, state=None, field=None, strip=False, film=False):
     """The deformed body at a step, coloured by `field`, with the reactions of its sides, or of a process charts against
     time; strip: up to eight steps beside each other; film: a list of pages, one for each state of a process."""
     body = Body(source, field)
@@ -373,6 +373,7 @@ def draw(source, state=None, field=None, strip=False, film=False, **options):
     if film and not body.times:
         raise InputError(f"{source.path}: is of load steps; --film draws files of process, --strip their steps")
     if strip:
+        alone(state)
         rows = chosen(len(body.steps), body.reactions.peak)
         shared = _frame(body, rows, options)
         titles = [body.load(k).title for k in rows]
@@ -382,6 +383,7 @@ def draw(source, state=None, field=None, strip=False, film=False, **options):
         rows = range(len(body.steps)) if film else [row]
         shared = _frame(body, rows, options)
 
+        @styled  # also where a film asks for its pages one by one
         def page(k):
             def picture(page, x, y, width, height):
                 view = View(page, x, y, width - shared.bars, height, shared.box)

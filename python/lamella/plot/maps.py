@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from .. import InputError
+from .._library import MEMBERS
 from .curves import solved
 from .page import (FIELD, HEIGHT, INK, WIDTH, Page, Range, bar, bar_width, legend, limits, near, pressure_unit,
                    settle, styled)
@@ -124,33 +125,35 @@ def modes(page, axes, m, more=()):
     legend(page, axes, handles + list(more), handlelength=1.0)
 
 
-def _single(r):
-    return [name for name in r.dtype.names if r.dtype[name].shape == () and r.dtype[name].kind in "fi"]
+def _single():
+    return [name for name, kind, count, *_ in MEMBERS if count == 1 and kind in "fi"]
 
 
 @styled
-def draw(source, state=None, field=None, **options):
+def draw(source, options, state=None, field=None):
     """How tissue fails, and `field` of each point: load_factor, or a single number of the records."""
     if state is not None:
         raise InputError("--state: a map is drawn as a whole")
     m, name = Map(source), field or "load_factor"
     if name == "load_factor":
         values, unit = m.load_factor, None
-    elif name not in _single(source.responses):
+    elif name not in _single():
         raise InputError(f"--field {name}: a map has load_factor and the single numbers of its records, such as "
                          "max_wall_tension, max_traction, open_fraction, max_gap, energy")
     else:
-        values, unit = m.of_records(lambda r: getattr(r, name)), None
-        if source.responses.help(name).endswith("(Pa)"):
+        values, unit = m.of_records(lambda r: getattr(r, name)), source.responses.help(name).rsplit("(", 1)[1][:-1]
+        if unit == "Pa":
             unit, size = pressure_unit(values)
             values = values / size
-        elif source.responses.help(name).endswith("(m)"):
-            values = values / source.apothem
+        elif unit == "m":
+            values, unit = values / source.apothem, None if name in FIELD_LABELS else "apothems"
+        unit = None if unit == "1" else unit
     page = Page(WIDTH, HEIGHT, options)
     norm = Range(values.ravel(), options)
     width, height = page.size
     wide = (width - 32 - bar_width(norm)) / 2
-    left = page.chart(9, 6, wide, height - 12)
+    top = 6 + page.head("", options)
+    left = page.chart(9, top, wide, height - top - 6)
     modes(page, left, m)
     settle(page)
     box = left.get_position()

@@ -19,6 +19,8 @@ from .. import InputError
 WIDTH, HEIGHT = 504, 252  #: of a journal's page, and half of that
 TEXT, SMALL, TITLE = 7.5, 6.75, 8.25  #: sizes of labels, of numbers and legends, of titles
 ROW = 10  #: between rows of a legend
+LEAST, LEAST_CHART = 5, 30  #: edge of axes, points: the bar of colours is 7 wide; of a chart without its labels
+LARGEST = 2**16  #: pixels, of the library that draws
 PNG_DPI, IMAGE_DPI = 400, 300  #: of PNG files, and of fields within vector files
 
 #: M. Okabe and K. Ito, Color Universal Design (2008), without the yellow, which is too light for lines
@@ -71,6 +73,8 @@ class Page(Figure):
     def area(self, x, y, width, height, **options):
         """Axes at a place of the page, points."""
         w, h = self.size
+        if min(width, height) < LEAST:
+            raise InputError(f"--size {w / 72:.3g}x{h / 72:.3g}: the page is too small for this picture")
         return self.add_axes((x / w, 1 - (y + height) / h, width / w, height / h), **options)
 
     def chart(self, x, y, width, height, **options):
@@ -82,13 +86,16 @@ class Page(Figure):
         return axes
 
     def head(self, title, options, x=9, y=12):
-        """The title: `title` of the options, or this one; none where the option is False."""
+        """The title: `title` of the options, or this one; none where the option is False. Returns the room that it takes
+        of a page that has none by itself."""
         wanted = options.get("title")
-        if wanted is False:
-            return
-        text = self.text(x / self.size[0], 1 - y / self.size[1], wanted or title, size=TITLE, va="center", color=DARK)
+        if wanted is False or not (wanted or title):
+            return 0
+        text = self.text(x / self.size[0], 1 - y / self.size[1], wanted or title, size=TITLE, va="center", color=DARK,
+                         parse_math=not wanted)
         width = text.get_window_extent().width * 72 / self.dpi
         text.set_size(TITLE * min(1, (self.size[0] - 2 * x) / max(width, 1)))
+        return 14
 
     @styled
     def save(self, path, dpi=None):
@@ -96,9 +103,12 @@ class Page(Figure):
         written; then no part of a file is left."""
         check_path(path)
         kind = Path(path).suffix.lower()[1:]
+        dpi = dpi or (PNG_DPI if kind == "png" else IMAGE_DPI)
+        if self.get_size_inches().max() * dpi >= LARGEST:
+            raise InputError(f"--dpi {dpi}: the picture would have more than {LARGEST} pixels across")
         whole = io.BytesIO()
         metadata = {"png": {"Software": "lamella"}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
-        self.savefig(whole, format=kind, dpi=dpi or (PNG_DPI if kind == "png" else IMAGE_DPI), metadata=metadata)
+        self.savefig(whole, format=kind, dpi=dpi, metadata=metadata)
         write(path, whole.getvalue())
 
     def _repr_png_(self):
@@ -118,13 +128,14 @@ def check_path(path):
 
 def write(path, content):
     """Writes a file of these bytes; where that fails none is left."""
-    path = Path(path)
+    opened = False
     try:
         with open(path, "wb") as file:
+            opened = True
             file.write(content)
     except OSError as error:
-        if path.is_file():
-            path.unlink()
+        if opened:
+            Path(path).unlink(missing_ok=True)
         raise OSError(f"{path}: cannot write the picture: {error.strerror or error}") from None
 
 
@@ -157,7 +168,7 @@ class Range(Normalize):
     """Limits of a colour scale: of the middle 98 % of values where the rest would stretch it, as peaks of the stress at
     corners of lumens do; or those of the options. `extend`: at which ends values lie beyond it."""
 
-    def __init__(self, values, options=None, low=None):
+    def __init__(self, values, options=None):
         values = np.sort(np.asarray(values, dtype=float)[np.isfinite(values)])
         limits, self.extend = (0.0, 1.0), "neither"
         if len(values):
@@ -166,8 +177,8 @@ class Range(Normalize):
             margin = 0.15 * (inner[1] - inner[0])
             clipped = margin > 0 and values[0] < inner[0] - margin, margin > 0 and values[-1] > inner[1] + margin
             limits = tuple(inner[k] if clipped[k] else values[-k] for k in (0, 1))
-        wanted = (options or {}).get("range")
-        limits = wanted or (limits if low is None else (low, limits[1]))
+        self.own = limits  #: those of the values, before a constant gets a range
+        limits = (options or {}).get("range") or limits
         size = max(map(abs, limits))
         if limits[1] - limits[0] <= 1e-6 * size or size == 0:  # constant, up to rounding
             half = 0.05 * size or 1.0
@@ -282,6 +293,8 @@ def _fit(page, axes, x, y, width, height):
             _legend(axes, *page.chart_legends[axes])
         whole, frame = axes.get_tightbbox(page.canvas.get_renderer()), axes.get_window_extent()
         place = wanted + frame.get_points() - whole.get_points()
+        if (place[1] - place[0]).min() * 72 / page.dpi < LEAST_CHART:
+            raise InputError(f"--size {page.size[0] / 72:.3g}x{page.size[1] / 72:.3g}: the page is too small for its charts")
         axes.set_position(Bbox(place / (page.size * page.dpi / 72)))
 
 

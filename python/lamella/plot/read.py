@@ -17,7 +17,8 @@ class Source(Result):
         """The dataset, with the shape [rows, columns] where these are given: `columns` counts all numbers of a row.
         finite: NaN and infinity cannot be drawn."""
         if name not in self.file:
-            raise InputError(f"{self.path}: holds no {name}; it is damaged, or older than this program")
+            raise InputError(f"{self.path}: holds no {name}: its scene has nothing of the kind, or the file is damaged or "
+                             "older than this program")
         try:
             values = self.file[name][()]
         except (OSError, ValueError, TypeError) as error:

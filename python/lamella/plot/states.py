@@ -4,7 +4,7 @@ import numpy as np
 from .. import InputError
 from . import curves
 from .page import HEIGHT, WIDTH, Page, number, ratio, settle, styled
-from .strip import chosen, strip as draw_strip
+from .strip import alone, chosen, strip as draw_strip
 from .tissue import Cells, Frame, field_of, View
 
 
@@ -15,7 +15,7 @@ def state_of(keys, answered, state, peak, path):
         if not len(known):
             return None
         return int(known[-1]) if state == "last" or peak is None else peak
-    found = np.flatnonzero(np.asarray(keys) == int(state))
+    found = np.flatnonzero(np.asarray(keys).astype(str) == str(state))
     if not len(found):
         raise InputError(f"--state {state}: {path} holds states {keys[0]} to {keys[-1]}")
     return int(found[0])
@@ -52,12 +52,13 @@ def _cells(source, k, field):
 
 
 @styled
-def draw(source, state=None, field=None, strip=False, **options):
+def draw(source, options, state=None, field=None, strip=False):
     """The tissue at a state, coloured by `field` (wall_stress, fibre_stretch), and the effective stress over the
     states; strip: up to eight states beside each other."""
     name, label = field_of(field)
     k, highest = _choose(source, state)
     if strip:
+        alone(state)
         return _strip(source, name, label, highest, options)
     page = Page(WIDTH, HEIGHT, options)
     cells = _cells(source, k, name)

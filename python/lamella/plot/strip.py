@@ -1,11 +1,18 @@
 """Several states of a file beside each other, in one window and with common colours."""
 import numpy as np
 
+from .. import InputError
 from .page import HEIGHT, SMALL, WIDTH, Page, settle
 from .tissue import View
 
 PANELS = 8
-MARGIN, GAP, TITLE, KEYS = 9, 8, 13, 26  # points; KEYS: two rows of legend
+MARGIN, GAP, TITLE, KEYS = 9, 8, 19, 26  # points; KEYS: two rows of legend
+
+
+def alone(state):
+    """A strip has all states."""
+    if state is not None:
+        raise InputError(f"--state {state}: --strip draws several states")
 
 
 def chosen(n, peak):
@@ -39,7 +46,7 @@ def strip(options, frame, titles, draw, key):
         view = View(page, x, y, width, height, box)
         draw(view, k)
         if options.get("title") is not False:
-            text = page.text(x / page.size[0], 1 - (y - TITLE / 2) / page.size[1], title, va="center", size=SMALL)
+            text = page.text(x / page.size[0], 1 - (y - 12) / page.size[1], title, va="center", size=SMALL)
             text.set_size(SMALL * min(1, width * page.dpi / 72 / max(text.get_window_extent().width, 1)))
     right = page.size[0] - MARGIN - frame.bars
     frame.draw_bars(page, right, MARGIN + TITLE, total)

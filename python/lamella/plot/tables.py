@@ -310,7 +310,7 @@ def _records_page(source, field, options):
 
 
 @styled
-def draw(source, state=None, field=None, angle=None, suction=None, turgor=None, accuracy=None, **options):
+def draw(source, options, state=None, field=None, angle=None, suction=None, turgor=None, accuracy=None):
     """With a table a slice through it: the first principal axis at `angle` ("15 deg") to the normal of face 0, at a
     suction (contact) or turgor (bonded) such as "0.02 MPa", and the accuracy that is asked for. Without one, and with
     `field` (stress, turgor), the records in the plane of their principal strains."""

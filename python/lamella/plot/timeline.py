@@ -42,7 +42,8 @@ class TimeLine:
 
     def title(self, k):
         event = f": {self.events[k]}" if self.events[k] else ""
-        return f"{number(self.time[k])} {self.unit}{event}"
+        several = "s" if self.unit == "day" and self.time[k] != 1 else ""
+        return f"{number(self.time[k])} {self.unit}{several}{event}"
 
 
 def charts(page, x, y, width, height, line, four, now, options):
@@ -62,7 +63,7 @@ def charts(page, x, y, width, height, line, four, now, options):
                 mark(page, axes, line.time[i], event if k == 0 else None, EVENT)
         if now is not None:
             axes.axvline(line.time[now], color=NOW, linewidth=0.8)
-        limits(axes, {"x": options.get("x")})
+        limits(axes, {"x": options.get("x"), "y": options.get("y") if k == 0 else None})
         legend(page, axes)
 
 

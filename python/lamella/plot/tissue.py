@@ -25,6 +25,7 @@ THINNEST_WALL = 1.5  #: points in which the colours of a wall are still told apa
 THINNEST_GAP, WIDEST_RIBBON, WIDEST_LAMELLA = 1.1, 5, 1.3  #: points
 CASING = 1.6  #: of the lamella's line: width of its dark outlines over its own
 THREAD, THREAD_DISTANCE, SHORTEST_THREAD = 0.7, 2.6, 1.5  #: points
+ROUNDING = 1e-5  #: of C1 + C2: a smaller contact pressure is the solver's tolerance
 HOLDS = 0.999  #: a lamella less broken than this is drawn across gaps
 REACH = 12  #: periods to each side in which images are looked for: more than the margins need
 
@@ -83,7 +84,8 @@ class Interface:
             if self.broken.shape != shape or self.across.shape != shape + (2,):
                 raise InputError(f"{source.path}: {group}/interface is damaged")
         self.widest = float(np.nanmax(self.gap, initial=0))
-        self.largest_pressure = float(np.nanmax(self.pressure, initial=0))
+        largest = float(np.nanmax(self.pressure, initial=0))  # MPa
+        self.largest_pressure = largest if largest * 1e6 > ROUNDING * source.stress_unit else 0.0
 
 
 class Cells:
@@ -352,9 +354,9 @@ class Frame:
         margin = CONTACT_MARGIN if faces else MARGIN
         self.box = np.min([b[0] for b in boxes], axis=0) - margin, np.max([b[1] for b in boxes], axis=0) + margin
         self.label = label
-        ranges = [Range(c.values) for c in several]
-        self.norm = Range(np.concatenate([c.values for c in several]) if len(several) == 1 else
-                          np.array([(r.vmin, r.vmax) for r in ranges]), options)
+        low, high = zip(*(Range(c.values).own for c in several))  # each without its own outliers
+        self.norm = Range(np.concatenate([c.values for c in several]),
+                          {"range": options.get("range") or (min(low), max(high))})
         widest = max((i.widest for i in faces), default=0)
         self.is_open = widest > VISIBLE_GAP
         self.gaps = Range([], {"range": (0, max(widest, VISIBLE_GAP))})

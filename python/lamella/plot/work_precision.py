@@ -106,7 +106,7 @@ def _panel(page, axes, data, kind, label, scale, looks):
 
 
 @styled
-def draw(path, **options):
+def draw(path, options):
     """The diagram of a file tradeoff.json that `lamella tradeoff -o` has written."""
     try:
         with open(path, encoding="utf-8") as file:
