@@ -27,6 +27,7 @@ expect 0 "$lamella" process week.yaml --frames 3 -o process.h5 --quiet
 "$lamella" map bonded.yaml -o map.h5 --quiet >/dev/null || [ $? = 3 ] || fail "no map"
 
 "$python" -W error::RuntimeWarning - <<'PYTHON' || fail "pages"
+import os
 import shutil
 import h5py
 import numpy as np
@@ -128,6 +129,21 @@ assert drawn.axes[-1].get_xlim() == (0, 1) and drawn.axes[-1].get_ylim() == (-1,
 assert "State" not in words(drawn)
 assert lamella.plot.rve("rve.h5", title="mine").texts[0].get_text() == "mine" and drawn._repr_png_()[1:4] == b"PNG"
 
+# a film's pages look as that of a state; a state without stress does not stretch the colours of a strip
+assert lamella.plot.draw("process.h5", film=True)[0].axes[-1].xaxis.label.get_size() == page.TEXT
+(scale,) = [axes for axes in pages[2].axes if axes.get_ylabel().startswith("largest principal")]
+with Source("torn.h5") as source:
+    most = max(np.abs(source.array(f"fields/{key}/wall_stress")).max() for key in source.keys)
+assert np.abs(scale.get_ylim()).max() <= most
+
+# a picture that cannot be written takes nothing away
+os.mkdir("taken.png")
+try:
+    drawn.save("taken.png", 20)
+    raise AssertionError("written over a folder")
+except OSError:
+    assert os.path.isdir("taken.png")
+
 # what does not fit is refused in words
 def refused(words, call):
     try:
@@ -141,6 +157,10 @@ refused("wall_stress and fibre_stretch", lambda: lamella.plot.draw("rve.h5", fie
 refused('is of kind "rve"', lambda: lamella.plot.fe2("rve.h5"))
 refused("--strip draws files of", lambda: lamella.plot.draw("map.h5", strip=True))
 refused("--angle 3 deg: chooses a slice", lambda: lamella.plot.draw("rve.h5", angle="3 deg"))
+refused("no such option", lambda: lamella.plot.draw("rve.h5", feild="J"))
+refused("nothing that it would change", lambda: lamella.plot.draw("database.h5", x=(0, 1)))
+refused("too small", lambda: lamella.plot.draw("rve.h5", size=(2, 8)))
+refused("no cells in this picture", lambda: lamella.plot.draw("process.h5", field="wall_stress"))
 refused("gram", lambda: lamella.plot.draw("database.h5", turgor="3 gram"))
 
 # arrays that someone has changed: drawn or refused
