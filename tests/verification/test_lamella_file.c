@@ -106,11 +106,11 @@ TEST_IS(TheFileHasShearTraction, FileHas("shear_traction", 1, fields.shear_tract
 
 static PetscBool ContactHas(const char name[])
 {
-  PetscInt rank, dims[4];
+  PetscInt rank, shape[4];
   PetscReal *values = NULL;
   PetscBool found;
 
-  CHECK(LamFileReadReals(CONTACT ".h5", name, &found, &rank, dims, &values));
+  CHECK(LamFileReadReals(CONTACT ".h5", name, &found, &rank, shape, &values));
   CHECK(PetscFree(values));
   return found;
 }
