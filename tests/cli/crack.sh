@@ -1,4 +1,4 @@
-# A patch with a notch: the crack that grows from it, its resistance and the toughness, in table, text and JSON.
+# slow: A patch with a notch: the crack that grows from it, its resistance and the toughness, in table, text and JSON.
 . "$(dirname "$0")/common.sh"
 
 patch() { # END DISSIPATION

@@ -1,5 +1,5 @@
-# Pages of pictures: fields on curved elements, outlines, texts that do not lie on each other, states and their words, slices
-# that are what queries give, damaged files that are refused in words.
+# slow: pages of pictures: fields on curved elements, outlines, texts that do not lie on each other, states and their
+# words, slices that are what queries give, damaged files that are refused in words.
 . "$(dirname "$0")/common.sh"
 
 python=${LAMELLA_PYTHON:-/usr/bin/python3}
