@@ -1,4 +1,4 @@
-# fe2 of tissue whose lamella breaks: what it says of damage, energies and the mesh, that 2 ranks say the same, and models of
+# slow: fe2 of tissue whose lamella breaks: what it says of damage, energies and the mesh, that 2 ranks say the same, and models of
 # points nearly
 . "$(dirname "$0")/common.sh"
 

@@ -1,4 +1,4 @@
-# process of a body on two ranks: the same states to 1e-6, with water and events, from a database and solved directly
+# slow: process of a body on two ranks: the same states to 1e-6, with water and events, from a database and solved directly
 . "$(dirname "$0")/../cli/common.sh"
 set -e
 
