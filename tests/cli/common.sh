@@ -71,7 +71,7 @@ tissue() {
 package() {
   local module
   python=/usr/bin/python3
-  export PYTHONPATH=$source/python LAMELLA_LIBRARY
+  export PYTHONPATH=$source/python:$source/tests/support LAMELLA_LIBRARY
   LAMELLA_LIBRARY=$(dirname "$lamella")
   for module in cffi numpy yaml "$@"; do
     "$python" -c "import $module" 2>/dev/null || { echo "skipped: no Python module $module"; exit 77; }

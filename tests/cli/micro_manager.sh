@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 
 python=/usr/bin/python3
-export PYTHONPATH=$source/python:$source/integrations/micro_manager LAMELLA_LIBRARY
+export PYTHONPATH=$source/python:$source/tests/support:$source/integrations/micro_manager LAMELLA_LIBRARY
 LAMELLA_LIBRARY=$(dirname "$lamella")
 "$python" -c 'import cffi, numpy, yaml, h5py' 2>/dev/null || { echo "skipped: python3-cffi, python3-numpy, python3-yaml and python3-h5py are not installed"; exit 77; }
 [ -f "$LAMELLA_LIBRARY/liblamella.so" ] || { echo "skipped: no shared library in this build"; exit 77; }
@@ -15,6 +15,7 @@ cat >common.py <<'PYTHON'
 import importlib
 import numpy as np
 import lamella
+from raises import raises
 
 def data(F, **scalars):  # what the manager reads: rows of F
     return {"strains1to3": F[0], "strains4to6": list(F[1]), "strains7to9": F[2], **scalars}
@@ -28,13 +29,6 @@ def F(shear, stretch=1.04):
     return np.array([[1.04, shear, 0], [0, stretch, 0], [0, 0, 1]])
 def model(module):
     return getattr(importlib.import_module(module, "MicroSimulation"), "MicroSimulation")
-def raises(kind, words, call):
-    try:
-        call()
-    except kind as error:
-        assert words in str(error), error
-        return
-    raise AssertionError(f"no {kind}")
 PYTHON
 
 expect 0 "$python" - <<'PYTHON'

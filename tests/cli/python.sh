@@ -14,6 +14,7 @@ expect 0 "$lamella" query table.h5 -F 1.01,0.02,0,0.99 --turgor "0.02 MPa" --coh
 import json, threading
 import numpy as np
 import lamella
+from raises import raises
 
 def close(one, other):
     assert np.allclose(one, other, rtol=1e-12, atol=1e-9, equal_nan=True), (one, other)
@@ -95,13 +96,6 @@ if h5py:
 assert not lamella.run("query", "table.h5", "-F", "1.01 0.02 0 0.99", "--accuracy", 1e-6).complete
 
 # mistakes
-def raises(kind, words, call):
-    try:
-        call()
-    except kind as error:
-        assert words in str(error), error
-        return
-    raise AssertionError(f"no {kind}")
 raises(lamella.InputError, "text:2:7: rve.cel: unknown key; did you mean cell?",
        lambda: lamella.Scene("text", text="version: 1\nrve: {cel: 3}\n"))
 raises(lamella.InputError, "shape (3, 2)", lambda: rve.solve(np.ones((3, 2))))

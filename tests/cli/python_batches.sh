@@ -8,17 +8,11 @@ cp "$source"/tests/scenes/{shear-bonded,shear-contact}.yaml .
 import inspect, pickle, subprocess, sys, threading, time
 import numpy as np
 import lamella
+from raises import raises
 nan = np.nan
 
 def close(one, other):  # other processes round as they like
     assert np.allclose(one, other, rtol=1e-9, atol=1e-6, equal_nan=True), (one, other)
-def raises(words, call):
-    try:
-        call()
-    except lamella.InputError as error:
-        assert words in str(error), error
-        return
-    raise AssertionError(f"no error: {words}")
 
 # independent states, and paths; each from undeformed tissue
 shear = np.linspace(0, 0.3, 6)
@@ -38,9 +32,9 @@ close(free.turgor, 2e4)
 assert free.F[1, 1, 1] < free.F[0, 1, 1]
 bad = lamella.solve("shear-bonded.yaml", [np.eye(3), -np.eye(3)])
 assert list(bad.status) == ["converged", "invalid_F"]
-raises("[states] or [paths, states]", lambda: lamella.solve("shear-bonded.yaml", np.eye(3)))
-raises("F11 and P11 are both given", lambda: lamella.solve("shear-bonded.yaml", [np.eye(3)], P=np.zeros((3, 3))))
-raises("different numbers of states", lambda: lamella.sweep("shear-bonded.yaml", {"load": [
+raises(lamella.InputError, "[states] or [paths, states]", lambda: lamella.solve("shear-bonded.yaml", np.eye(3)))
+raises(lamella.InputError, "F11 and P11 are both given", lambda: lamella.solve("shear-bonded.yaml", [np.eye(3)], P=np.zeros((3, 3))))
+raises(lamella.InputError, "different numbers of states", lambda: lamella.sweep("shear-bonded.yaml", {"load": [
     [{"F": [[1, 0], [0, 1]]}], [{"ramp": {"to": [[1, 0.1], [0, 1]], "steps": 2}}]]}))
 
 # threads: the interpreter goes on during a solve, and RVEs of two threads do not disturb each other

@@ -21,17 +21,11 @@ END
 import glob, json, subprocess, sys
 import numpy as np
 import lamella
+from raises import raises
 nan = np.nan
 
 def close(one, other, rtol=1e-10):
     assert np.allclose(one, other, rtol=rtol, atol=1e-9, equal_nan=True), (one, other)
-def raises(words, call):
-    try:
-        call()
-    except lamella.InputError as error:
-        assert words in str(error), error
-        return
-    raise AssertionError(f"no error: {words}")
 
 # along a scene's own loads, with what the program tells of each state
 UNITS = {"F": 1, "P": 1e6, "tangent": 1e6, "energy": 1e6, "turgor": 1e6, "lumen_fraction": 1, "turgor_mean": 1e6, "jumped": 1,
@@ -54,13 +48,13 @@ scene = lamella.Scene("shear-sealed.yaml")
 assert len(scene) == 5 and np.isnan(scene.F[3:, 0, 0]).all() and (scene.P[3:, 0, 0] == 0).all()
 assert not np.isnan(scene.F[:2]).any() and np.isnan(scene.P[:2]).all()
 close(lamella.RVE(scene).solve(scene.F, P=scene.P).P, lamella.RVE(scene).solve().P)
-raises("find their pressure", lambda: lamella.RVE(scene).solve(np.eye(3), 1e4))
+raises(lamella.InputError, "find their pressure", lambda: lamella.RVE(scene).solve(np.eye(3), 1e4))
 
 # ... loads that are not known before are none
-raises("torn.yaml: load: the ramp follows what is dissipated", lambda: lamella.Scene("torn.yaml").F)
-raises("sealed.yaml: load: F counts from the inflated tissue", lambda: lamella.Scene("sealed.yaml").F)
+raises(lamella.InputError, "torn.yaml: load: the ramp follows what is dissipated", lambda: lamella.Scene("torn.yaml").F)
+raises(lamella.InputError, "sealed.yaml: load: F counts from the inflated tissue", lambda: lamella.Scene("sealed.yaml").F)
 scene = lamella.Scene("uniaxial.yaml")
-raises("state 1: F22 and P22 are both NaN", lambda: lamella.RVE(scene).solve(scene.F, P=scene.P))
+raises(lamella.InputError, "state 1: F22 and P22 are both NaN", lambda: lamella.RVE(scene).solve(scene.F, P=scene.P))
 assert "sealed in the inflated tissue" in str(lamella.RVE("sealed.yaml").solve(np.eye(3)).reason)
 
 # one's own loads: inflated tissue, and what counts from there
@@ -78,11 +72,11 @@ again.solve([[1.1, 0], [0, nan]] * np.diag(free.F)[:2], P=[[nan, nan], [nan, 0]]
 close(again.solve([[1.1, 0.1], [0, 1]]).P, rve.solve([[1.1, 0.1], [0, 1]]).P)
 
 # mistakes
-raises("F11 and P11 are both given", lambda: rve.solve(np.eye(3), P=np.zeros((3, 3))))
-raises("P has the shape ()", lambda: rve.solve(np.eye(3), P=0))
-raises("give F", lambda: rve.solve(turgor=1e4))
-raises("no block `load`", lambda: lamella.RVE({key: text[key] for key in ("version", "rve")}).solve())
-raises("scene's own loads alone", lambda: lamella.RVE("torn.yaml").solve(np.eye(3), estimate=True))
+raises(lamella.InputError, "F11 and P11 are both given", lambda: rve.solve(np.eye(3), P=np.zeros((3, 3))))
+raises(lamella.InputError, "P has the shape ()", lambda: rve.solve(np.eye(3), P=0))
+raises(lamella.InputError, "give F", lambda: rve.solve(turgor=1e4))
+raises(lamella.InputError, "no block `load`", lambda: lamella.RVE({key: text[key] for key in ("version", "rve")}).solve())
+raises(lamella.InputError, "scene's own loads alone", lambda: lamella.RVE("torn.yaml").solve(np.eye(3), estimate=True))
 assert rve.solve([[nan, 0], [0, 1]]).status == "invalid_F"  # of no answer, but no mistake
 assert "rotate" in str(rve.solve([[1, nan], [nan, 1]], P=[[nan, 0], [0, nan]]).reason)
 PYTHON

@@ -9,19 +9,13 @@ cp "$source/tests/fuzz/files/contact-table.yaml" table.yaml
 import sys, warnings
 import numpy as np
 import lamella
+from raises import raises
 
 assert not {"h5py", "yaml", "matplotlib"} & set(sys.modules)  # import is quick
 warnings.simplefilter("ignore")
 
 def close(one, other):
     assert np.allclose(one, other, rtol=1e-12, atol=1e-12, equal_nan=True), (one, other)
-def raises(kind, words, call):
-    try:
-        call()
-    except kind as error:
-        assert words in str(error), error
-        return
-    raise AssertionError(f"no {kind}: {words}")
 
 # units
 assert lamella.quantity("0.02 MPa") == 2e4 and lamella.quantity("4 degC") == 277.15

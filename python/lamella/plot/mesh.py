@@ -58,7 +58,7 @@ class Mesh:
         self.inner = edges[first[count > 1]]  #: [edge, 4]: start, middle, end, element
         boundary = edges[np.sort(first[count == 1])]
         follows = {(self.groups[e[3]], e[0]): i for i, e in enumerate(boundary.tolist())}
-        self.loops, self.loop_group, unused = [], [], np.ones(len(boundary), bool)
+        self.loops, unused = [], np.ones(len(boundary), bool)
         for start in range(len(boundary)):
             loop, i = [], start
             while i is not None and unused[i]:
@@ -67,7 +67,6 @@ class Mesh:
                 i = follows.get((self.groups[boundary[i, 3]], boundary[i, 2]))
             if loop:
                 self.loops.append(boundary[loop])  #: each [edge, 4]
-                self.loop_group.append(self.groups[boundary[loop[0], 3]])
 
     def functions(self, x, r, s):
         """Values [element, place, ...] of a nodal quantity at places of each element."""
