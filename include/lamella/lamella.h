@@ -5,6 +5,7 @@
     scene.h                the user's input, converted to nondimensional numbers
     place_field.h          fields of the reference position
     lattice.h              arrangement of the cells of a microstructure
+    tissue.h               cells of any shape
     response.h             load and response of a material point; responders
     ellipticity.h          strong ellipticity of a tangent
     rve.h                  solves the representative volume element
@@ -42,6 +43,7 @@
 #include <lamella/scene.h>
 #include <lamella/place_field.h>
 #include <lamella/lattice.h>
+#include <lamella/tissue.h>
 #include <lamella/response.h>
 #include <lamella/ellipticity.h>
 #include <lamella/rve.h>

@@ -163,6 +163,8 @@ LAM_EXPORT PetscErrorCode LamRVEUnseal(LamRVE rve);
 
 /* Number of unknowns of a solve: free displacement components, multipliers of contact, pressures that can be sealed. */
 LAM_EXPORT PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns);
+/* Likewise of an RVE that is not set up, without pressures of sealed lumens. */
+LAM_EXPORT PetscErrorCode LamRVECountUnknowns(const LamMicrostructure *micro, PetscInt *unknowns);
 
 /*
   Mesh data for output. Arrays are owned by the rve and valid until it is destroyed.

@@ -61,13 +61,17 @@ typedef struct {
   PetscInt cluster;                           /* of cells that hold together (LamLamella, between) */
 } LamCell;
 
+typedef struct LamTissue_s *LamTissue; /* cells of any shape (tissue.h) */
+
 /* A tissue microstructure, nondimensional. It determines the map (F, turgor, cohesion) -> response. */
 typedef struct {
   PetscReal wall_thickness; /* of one cell's wall, in apothems; 0 < t < 1 */
   PetscReal orientation;    /* angle of face normal 0 to the X1 axis, radian */
   PetscBool is_patch;       /* a block of cells between grips; otherwise periodic */
   LamPatchSides sides;      /* of a patch */
-  PetscInt cells[2];        /* per period along lattice vectors 0 and 1; of a patch: columns and rows */
+  PetscInt cells[2];        /* per period along lattice vectors 0 and 1; of a patch: columns and rows; of polygons
+                               their number and 1 */
+  LamTissue tissue;         /* cells that are polygons; NULL: hexagons. Owned as `cell` is */
   PetscInt notch_row, notch_columns; /* of a patch with a lamella: none holds below the first cells of this row */
   LamWall wall;
   LamCell *cell; /* [cells[0] cells[1]], cell = i cells[1] + j; NULL: all cells are equal. Owned by the original; copies
@@ -116,7 +120,7 @@ LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
 
 /* ---- of tissue with law `lamella` (src/core/lamella.c) ---- */
 
-/* Factors of strength and energy of the lamella between a cell and that across its face 0..5, without those of
+/* Factors of strength and energy of the lamella between a cell and that across its face, without those of
    junctions; PETSC_FALSE: of cells that differ none is there. */
 LAM_EXPORT PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, PetscInt face,
                                            PetscReal *strength, PetscReal *energy);
@@ -445,6 +449,7 @@ typedef struct {
   PetscReal tolerance;          /* of the Newton iterations of an RVE; 0: rounding */
   LamStrength strength;
   PetscReal accuracy;                /* requested relative error of the effective stress */
+  char tissue[PETSC_MAX_PATH_LEN];   /* file of its cells; empty: hexagons */
   char measured[PETSC_MAX_PATH_LEN]; /* mesh measurements by `tradeoff` for this tissue; empty: not given */
   PetscInt load_count;
   LamLoad *loads;             /* states 1..load_count with ramps expanded; owned */

@@ -8,12 +8,13 @@ PetscErrorCode LamGeometryCreate(LamRVE rve)
   PetscCall(PetscMalloc1(mesh->element_count, &rve->geometry));
   PetscCall(PetscCalloc1(mesh->element_count, &rve->stress));
   for (PetscInt e = 0; e < mesh->element_count; ++e) {
-    const PetscReal angle = rve->micro.orientation + (PetscReal)LamMeshFaceOfElement(mesh, e) * 60.0 * PETSC_PI / 180.0;
-    const PetscReal along[2] = {-PetscSinReal(angle), PetscCosReal(angle)};
-    PetscReal X[LAM_ELEMENT_NODES][2];
+    PetscReal X[LAM_ELEMENT_NODES][2], along[2], length;
 
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) X[a][d] = mesh->X[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d];
+    for (PetscInt d = 0; d < 2; ++d) along[d] = X[2][d] - X[1][d]; /* the chord of the outer edge */
+    length = PetscSqrtReal(along[0] * along[0] + along[1] * along[1]);
+    for (PetscInt d = 0; d < 2; ++d) along[d] /= length;
     PetscCall(LamElementSetGeometry((const PetscReal(*)[2])X, along, &rve->geometry[e]));
   }
   PetscFunctionReturn(0);

@@ -8,25 +8,33 @@ static PetscInt CountFaces(const LamMesh *mesh)
 {
   PetscInt count = 0;
 
-  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k) count += k % LAM_FACES < 3 && mesh->neighbour[k] >= 0;
+  for (PetscInt k = 0; k < mesh->tissue->faces; ++k) count += LamTissueIsSlave(mesh->tissue, k);
   return count;
 }
 
-static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt k,
-                              PetscInt hats)
+/* Whether the outer walls of both cells that meet a face at its start, or at the start of its partner, are prescribed.
+ */
+static PetscBool IsHeldAtStart(LamTissue tissue, PetscInt face)
 {
-  const PetscReal *image;
-  const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
-  const PetscBool *held = &mesh->held[LAM_FACES * cell], *facing = &mesh->held[LAM_FACES * other];
-  /* outer walls that meet the face at its start and end: k - 1 and k + 1 of the cell, k + 4 and k + 2 of the other */
-  const PetscInt low = held[(k + 5) % LAM_FACES] && facing[(k + 4) % LAM_FACES] ? 1 : 0;
-  const PetscInt high = hats - 1 - (held[k + 1] && facing[k + 2] ? 1 : 0);
+  return (PetscBool)(tissue->held[LamTissuePrevious(tissue, face)] &&
+                     tissue->held[LamTissueNext(tissue, tissue->partner[face])]);
+}
 
-  return (LamContactFace){.cell = cell,
-                          .face = k,
+static LamContactFace NewFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt face, PetscInt hats)
+{
+  const LamTissue tissue = mesh->tissue;
+  const PetscInt partner = tissue->partner[face], cell = tissue->cell[face], other = tissue->cell[partner];
+  const PetscInt low = IsHeldAtStart(tissue, face) ? 1 : 0;
+  const PetscInt high = hats - 1 - (IsHeldAtStart(tissue, partner) ? 1 : 0);
+
+  return (LamContactFace){.face = face,
+                          .partner = partner,
+                          .cell = cell,
                           .other = other,
-                          .shift = {image[0], image[1]},
+                          .family = tissue->direction[face],
+                          .shift = {mesh->image[2 * face], mesh->image[2 * face + 1]},
                           .cohesion = LamFaceCohesion(micro, cell, other),
+                          .J0 = &mesh->edge[face * mesh->along],
                           .low = low,
                           .high = high,
                           .first = low,
@@ -37,24 +45,25 @@ static void PlaceFaces(const LamMicrostructure *micro, const LamMesh *mesh, LamC
 {
   PetscInt f = 0;
 
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt k = 0; k < 3; ++k) {
-      const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(mesh, cell, k, &image);
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) contact->at[face] = -1;
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+    const PetscInt partner = mesh->tissue->partner[face];
 
-      if (other < 0) continue;
-      contact->faces[f] = NewFace(micro, mesh, cell, k, contact->hats);
-      for (PetscInt i = 0; i < contact->chain; ++i) {
-        const PetscBool slave = (PetscBool)(i < contact->hats);
-        const PetscInt node = slave ? LamMeshOuterNode(mesh, cell, k, i)
-                                    : LamMeshOuterNode(mesh, other, k + LAM_FACES / 2, i - contact->hats);
+    if (!LamTissueIsSlave(mesh->tissue, face)) continue;
+    contact->faces[f] = NewFace(micro, mesh, face, contact->hats);
+    contact->at[face] = contact->at[partner] = f;
+    for (PetscInt i = 0; i < contact->chain; ++i) {
+      const PetscBool slave = (PetscBool)(i < contact->hats);
+      const PetscInt node =
+          slave ? LamMeshOuterNode(mesh, face, i) : LamMeshOuterNode(mesh, partner, i - contact->hats);
 
-        contact->classes[f * contact->chain + i] = mesh->node_class[node];
-        for (PetscInt d = 0; d < 2; ++d)
-          contact->shift[2 * (f * contact->chain + i) + d] = mesh->shift[2 * node + d] + (slave ? 0.0 : image[d]);
-      }
-      ++f;
+      contact->classes[f * contact->chain + i] = mesh->node_class[node];
+      for (PetscInt d = 0; d < 2; ++d)
+        contact->shift[2 * (f * contact->chain + i) + d] =
+            mesh->shift[2 * node + d] + (slave ? 0.0 : contact->faces[f].shift[d]);
     }
+    ++f;
+  }
 }
 
 PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamContact **out)
@@ -73,13 +82,12 @@ PetscErrorCode LamContactCreate(const LamMicrostructure *micro, const LamMesh *m
              PETSC_ERR_USER_INPUT, "%d cells with %d elements along a face are too many for one RVE",
              (int)mesh->cell_count, (int)along);
   PetscCall(PetscMalloc5(contact->face_count, &contact->faces, contact->face_count * contact->chain, &contact->classes,
-                         2 * contact->face_count * contact->chain, &contact->shift, along, &contact->J0, contact->chain,
-                         &contact->x));
+                         2 * contact->face_count * contact->chain, &contact->shift, mesh->tissue->faces, &contact->at,
+                         contact->chain, &contact->x));
   PetscCall(PetscCalloc5(contact->count, &contact->lambda, contact->count, &contact->gap, contact->count,
                          &contact->weight, contact->count, &contact->active, contact->count, &contact->held));
   PetscCall(PetscCalloc2(contact->count * contact->dofs, &contact->rows,
                          contact->face_count * contact->dofs * contact->dofs, &contact->hessian));
-  for (PetscInt e = 0; e < along; ++e) contact->J0[e] = LamFaceLength(mesh) * (mesh->ends[e + 1] - mesh->ends[e]);
   PlaceFaces(micro, mesh, contact);
   PetscCall(LamGapAreaCreate(micro, mesh, &contact->gaps));
   PetscCall(LamMortarSegmentsCreate(along, along, &contact->segments));
@@ -116,7 +124,7 @@ PetscErrorCode LamContactDestroy(LamContact **contact)
   PetscCall(LamMortarSegmentsDestroy(&(*contact)->segments));
   PetscCall(LamMortarResultDestroy(&(*contact)->result));
   PetscCall(LamGapAreaDestroy(&(*contact)->gaps));
-  PetscCall(PetscFree5((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->J0, (*contact)->x));
+  PetscCall(PetscFree5((*contact)->faces, (*contact)->classes, (*contact)->shift, (*contact)->at, (*contact)->x));
   PetscCall(PetscFree5((*contact)->lambda, (*contact)->gap, (*contact)->weight, (*contact)->active, (*contact)->held));
   PetscCall(PetscFree2((*contact)->rows, (*contact)->hessian));
   PetscCall(PetscFree2((*contact)->position, (*contact)->coupling));
@@ -137,7 +145,7 @@ LamMortarChains LamContactChains(LamRVE rve, const PetscReal F[9], const PetscRe
 {
   LamContact *contact = rve->contact;
   const LamMortarChains chains = {rve->mesh.along, rve->mesh.along, (const PetscReal(*)[2])contact->x,
-                                  (const PetscReal(*)[2])(contact->x + contact->hats), contact->J0};
+                                  (const PetscReal(*)[2])(contact->x + contact->hats), contact->faces[f].J0};
 
   GatherChains(rve, F, y, f);
   LamMortarFindSegments(&chains, &contact->segments);
@@ -244,7 +252,7 @@ PetscBool LamContactCarries(const LamContact *contact, PetscInt h)
 {
   const LamContactFace *face = &contact->faces[h / contact->hats];
   const PetscInt j = h % contact->hats;
-  const PetscReal half = 0.5 * contact->J0[PetscMin(j, contact->hats - 2) / 2];
+  const PetscReal half = 0.5 * face->J0[PetscMin(j, contact->hats - 2) / 2];
 
   return (PetscBool)(!contact->held[h] && j >= face->first && j <= face->last &&
                      contact->weight[h] > LEAST_WEIGHT * half);

@@ -1,7 +1,8 @@
 /*
   Contact with cohesion between the outer walls of neighbouring cells.
 
-  Faces 0, 1, 2 of each cell are slaves; the master of face k is face k + 3 of the neighbouring cell or of its image.
+  Of the two walls at a face, one is the slave (LamTissueIsSlave); the master is its partner in the neighbouring cell or
+  in its image.
   Terms of the potential (docs/theory/mortar.md, The discrete Lagrangian):
     - sum_A lambda_A G_A(x, F)     multipliers times weighted gaps, lambda >= 0, G >= 0, lambda G = 0
     + g F33 A_gap(x, F)            cohesion, in gap_area.c
@@ -19,10 +20,12 @@
 #include "mortar.h"
 
 typedef struct {
-  PetscInt cell, face; /* the slave */
-  PetscInt other;      /* cell of the master, face + 3 */
-  PetscReal shift[2];  /* of the master's image */
-  PetscReal cohesion;  /* factor on the load's cohesion */
+  PetscInt face, partner; /* the slave and the master, of all faces (tissue.h) */
+  PetscInt cell, other;   /* their cells */
+  PetscInt family;        /* 0 to 2: direction of the slave */
+  PetscReal shift[2];     /* of the master's image */
+  PetscReal cohesion;     /* factor on the load's cohesion */
+  const PetscReal *J0;    /* [along] reference lengths of the slave's edges; borrowed from the mesh */
   PetscInt low,
       high; /* range of hats that may have a multiplier: all except at corners where both walls are prescribed */
   PetscInt first, last; /* hats with a multiplier of their own; first > last: none */
@@ -30,7 +33,7 @@ typedef struct {
 
 typedef struct {
   PetscBool exact;     /* the exact law is in use, else the smooth one (smooth_contact.h) */
-  PetscInt face_count; /* 3 per cell, less those without a neighbour in a patch */
+  PetscInt face_count; /* faces with a partner */
   PetscInt hats;       /* per face: 2 along + 1 */
   PetscInt chain;      /* nodes of both chains of a face: slave 0.., then master */
   PetscInt dofs;       /* 2 chain */
@@ -39,7 +42,7 @@ typedef struct {
   PetscInt *classes; /* [face][chain] classes of the nodes, counter-clockwise each */
   PetscReal *shift;  /* [face][chain][2] of the nodes: x = y_class + F shift */
   LamGapArea gaps;
-  PetscReal *J0;              /* [along] reference lengths of the edges of a face */
+  PetscInt *at;               /* [face of the mesh] which face of these it belongs to, as slave or master; -1: none */
   PetscReal *lambda;          /* [count]; merged hats carry the value of the hat that they are merged into */
   PetscReal *gap;             /* [count] weighted gap / weight at the last evaluated positions; 0 where merged */
   PetscReal *weight;          /* [count] */

@@ -26,7 +26,7 @@ PetscErrorCode LamRVEGetInterfaceFaces(LamRVE rve, PetscInt owner[])
     const LamContactFace *face = &rve->contact->faces[f];
 
     owner[3 * f] = face->cell;
-    owner[3 * f + 1] = face->face;
+    owner[3 * f + 1] = LamMeshLocalFace(&rve->mesh, face->face);
     owner[3 * f + 2] = face->other;
   }
   PetscFunctionReturn(0);
@@ -40,13 +40,13 @@ static PetscInt FacingEdge(const LamMortarSegments *segments, PetscReal s)
   return -1;
 }
 
-static PetscReal PressureAt(const LamContact *contact, const PetscReal lambda[], PetscReal s, const PetscReal Xs[2],
+static PetscReal PressureAt(const LamMortarChains *chains, const PetscReal lambda[], PetscReal s, const PetscReal Xs[2],
                             PetscReal F33)
 {
-  const PetscInt piece = PetscMin((PetscInt)(2.0 * s), contact->hats - 2);
+  const PetscInt piece = PetscMin((PetscInt)(2.0 * s), 2 * chains->n - 1);
   const PetscReal u = 2.0 * s - (PetscReal)piece;
 
-  return contact->J0[piece / 2] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) /
+  return chains->J0[piece / 2] * ((1.0 - u) * lambda[piece] + u * lambda[piece + 1]) /
          (PetscSqrtReal(LamDot(Xs, Xs)) * F33);
 }
 
@@ -76,7 +76,7 @@ PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, PetscReal from[
       }
       if (gap) gap[k] = distance;
       if (pressure)
-        pressure[k] = edge < 0 ? 0.0 : PressureAt(contact, &state->lambda[f * contact->hats], s, Xs, state->load.F[8]);
+        pressure[k] = edge < 0 ? 0.0 : PressureAt(&chains, &state->lambda[f * contact->hats], s, Xs, state->load.F[8]);
     }
   }
   PetscFunctionReturn(0);

@@ -1,3 +1,4 @@
+#include <lamella/lattice.h>
 #include "rve_impl.h"
 
 static PetscInt EdgeOf(PetscInt point)
@@ -37,14 +38,13 @@ static void SetFaceEdge(const LamMesh *mesh, const LamContact *contact, PetscInt
   const PetscInt e = edge % mesh->along;
   LamEdgeNodes *nodes = &layer->nodes[edge];
 
-  nodes->length = contact->J0[e];
+  nodes->length = mesh->edge[of->face * mesh->along + e];
   for (PetscInt k = 0; k < 3; ++k) {
-    const PetscInt column[2] = {of->face * mesh->along + e, (of->face + LAM_FACES / 2 + 1) * mesh->along - 1 - e};
+    const PetscInt ring[2] = {LamMeshRing(mesh, of->face, e, k),
+                              LamMeshRing(mesh, of->partner, mesh->along - 1 - e, 2 - k)};
 
-    PlaceNode(mesh, LamMeshNode(mesh, of->cell, LamMeshRing(mesh, column[0], k), mesh->radial_nodes - 1), NULL, k,
-              nodes);
-    PlaceNode(mesh, LamMeshNode(mesh, of->other, LamMeshRing(mesh, column[1], 2 - k), mesh->radial_nodes - 1),
-              of->shift, 3 + k, nodes);
+    PlaceNode(mesh, LamMeshNode(mesh, ring[0], mesh->radial_nodes - 1), NULL, k, nodes);
+    PlaceNode(mesh, LamMeshNode(mesh, ring[1], mesh->radial_nodes - 1), of->shift, 3 + k, nodes);
   }
   SetWeights(layer, edge);
 }
@@ -65,13 +65,15 @@ static void SetCutEdge(const LamMesh *mesh, PetscInt cut, PetscInt m, LamLayer *
   SetWeights(layer, edge);
 }
 
+/* At the place s, in elements along the face. Across a notch nothing holds, nor on arcs, where air lies between. */
 static LamCohesive LawOfFace(const LamMicrostructure *micro, const LamMesh *mesh, const LamContactFace *of, PetscReal s)
 {
-  const PetscReal face = LamFaceLength(mesh), at = face * LamMeshShare(mesh, s);
+  const PetscReal face = mesh->length[of->face], at = face * LamMeshShare(mesh, of->face, s);
+  const PetscInt *flat = mesh->flat[of->face], e = (PetscInt)s;
   PetscReal strength, energy;
 
-  (void)LamLamellaFaceFactors(micro, of->cell, of->face, &strength, &energy);
-  if (LamLatticeIsCut(micro, of->cell, of->other)) strength = energy = 0.0;
+  (void)LamLamellaFaceFactors(micro, of->cell, LamMeshLocalFace(mesh, of->face), &strength, &energy);
+  if (LamLatticeIsCut(micro, of->cell, of->other) || e < flat[0] || e >= flat[1]) strength = energy = 0.0;
   return LawAt(&micro->lamella, strength, energy,
                (PetscBool)(PetscMin(at, face - at) < micro->lamella.junction_length));
 }
@@ -105,7 +107,7 @@ void LamLayerSetLaws(const LamMicrostructure *micro, const LamMesh *mesh, const 
 PetscErrorCode LamLayerCreate(const LamMicrostructure *micro, const LamMesh *mesh, const LamContact *contact,
                               LamLayer **out)
 {
-  const PetscInt faces = contact->face_count * mesh->along, cuts = mesh->cell_count * mesh->cuts;
+  const PetscInt faces = contact->face_count * mesh->along, cuts = mesh->tissue->faces * mesh->cuts;
   const PetscInt edges = faces + cuts * mesh->through;
   LamLayer *layer;
 
@@ -174,7 +176,7 @@ static PetscBool IsInPart(LamRVE rve, PetscInt edge)
   const LamContactFace *face = &rve->contact->faces[edge / rve->mesh.along];
 
   if (!rve->part) return PETSC_TRUE;
-  if (edge >= faces) return LamMoves(rve, (edge - faces) / (rve->mesh.through * rve->mesh.cuts));
+  if (edge >= faces) return LamMoves(rve, LamMeshCellOfCut(&rve->mesh, (edge - faces) / rve->mesh.through));
   return (PetscBool)(LamMoves(rve, face->cell) || LamMoves(rve, face->other));
 }
 
@@ -349,7 +351,7 @@ static void FindHeldHats(LamRVE rve)
 static void FindTorn(LamRVE rve)
 {
   LamLayer *layer = rve->layer;
-  const PetscInt through = LAM_EDGE_POINTS * rve->mesh.through, cuts = rve->mesh.cell_count * rve->mesh.cuts;
+  const PetscInt through = LAM_EDGE_POINTS * rve->mesh.through, cuts = rve->mesh.tissue->faces * rve->mesh.cuts;
 
   for (PetscInt k = 0; k < cuts; ++k) {
     const LamBond *bond = &layer->bond[layer->between + k * through];
@@ -404,7 +406,7 @@ static void WatchCut(void *ctx, const LamBondPoint *point)
 PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any)
 {
   LamLayer *layer = rve->layer;
-  const PetscInt cuts = rve->mesh.cell_count * rve->mesh.cuts, through = LAM_EDGE_POINTS * rve->mesh.through;
+  const PetscInt cuts = rve->mesh.tissue->faces * rve->mesh.cuts, through = LAM_EDGE_POINTS * rve->mesh.through;
   Tearing t = {.rve = rve};
 
   PetscFunctionBeginUser;
@@ -414,13 +416,13 @@ PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any)
   for (PetscInt k = 0; k < cuts; ++k) t.broken[k] = PETSC_TRUE;
   LamLayerVisitPoints(rve, load->F, rve->y, WatchCut, &t);
   for (PetscInt k = 0; k < cuts; ++k) {
-    if (!t.broken[k] || LamHasBurst(rve, k / LAM_CUTS)) continue;
+    if (!t.broken[k] || LamHasBurst(rve, LamMeshCellOfCut(&rve->mesh, k))) continue;
     *any = layer->torn[k] = PETSC_TRUE;
     for (PetscInt q = k * through; q < (k + 1) * through; ++q) {
       LamBondTake(&t.after[q], &layer->bond[layer->between + q]);
       layer->spent += t.spent[q];
     }
-    Empty(rve, load, k / LAM_CUTS);
+    Empty(rve, load, LamMeshCellOfCut(&rve->mesh, k));
   }
   if (*any) LamWallsTearAt(&rve->smooth->walls, layer->torn);
   PetscCall(PetscFree3(t.broken, t.after, t.spent));

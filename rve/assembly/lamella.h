@@ -34,7 +34,7 @@ typedef struct {
   PetscReal spent, released, work, juice; /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
-  PetscBool *torn;  /* [cell][LAM_CUTS] cuts broken through at the start of the step, or by which a cell bursts in it;
+  PetscBool *torn;  /* [cut] cuts broken through at the start of the step, or by which a cell bursts in it;
                        NULL: walls do not tear */
   PetscBool *burst; /* [cell] */
 } LamLayer;

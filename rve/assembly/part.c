@@ -18,9 +18,8 @@ static PetscInt AddNeighbours(LamRVE rve, PetscInt first, LamPart *part)
   const PetscInt last = part->count;
 
   for (PetscInt k = first; k < last; ++k)
-    for (PetscInt face = 0; face < LAM_FACES; ++face) {
-      const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(&rve->mesh, part->cells[k], face, &image);
+    for (PetscInt i = 0; i < LamMeshFaceCount(&rve->mesh, part->cells[k]); ++i) {
+      const PetscInt other = LamMeshNeighbour(&rve->mesh, rve->mesh.tissue->first[part->cells[k]] + i);
 
       if (other < 0 || part->near[other]) continue;
       part->near[other] = PETSC_TRUE;
@@ -32,12 +31,15 @@ static PetscInt AddNeighbours(LamRVE rve, PetscInt first, LamPart *part)
 /* Positions of the cells, each of which has nodes of its own. */
 static PetscErrorCode ListUnknowns(const LamMesh *mesh, LamPart *part)
 {
-  const PetscInt nodes = mesh->node_count / mesh->cell_count;
+  PetscInt nodes = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * nodes * part->count, &part->unknown));
+  for (PetscInt k = 0; k < part->count; ++k) nodes += LamMeshRingNodes(mesh, part->cells[k]) * mesh->radial_nodes;
+  PetscCall(PetscMalloc1(2 * nodes, &part->unknown));
   for (PetscInt k = 0; k < part->count; ++k) {
-    for (PetscInt node = part->cells[k] * nodes; node < (part->cells[k] + 1) * nodes; ++node)
+    const PetscInt end = LamMeshFirstRing(mesh, part->cells[k] + 1) * mesh->radial_nodes;
+
+    for (PetscInt node = LamMeshFirstRing(mesh, part->cells[k]) * mesh->radial_nodes; node < end; ++node)
       for (PetscInt d = 0; d < 2 && mesh->node_class[node] > 0; ++d)
         part->unknown[part->unknowns++] = LamUnknown(mesh->node_class[node], d);
     if (k == part->moving - 1) part->moving_unknowns = part->unknowns;

@@ -91,7 +91,6 @@ struct LamRVE_s {
   const LamWallLaw **law; /* [cell]; the array is owned, the laws are not */
   PetscReal stiffest;     /* largest bulk or fibre modulus of any cell */
   PetscInt changes;       /* number of changes of the moduli */
-  PetscReal thinnest;     /* thinnest wall, apothems */
   LamMesh mesh;
   LamElementGeometry *geometry; /* [element] */
   LamElementStress *stress;     /* [element]: independent stresses of the current iteration */
@@ -164,12 +163,6 @@ static inline PetscBool LamHasTurgor(LamRVE rve, const LamLoad *load)
 static inline PetscReal LamTurgor(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscInt cell)
 {
   return rve->seal.closed ? y[rve->ndof + cell] : load->turgor * LamTurgorFactor(rve, cell);
-}
-
-/* Thickness of the thinner wall between two cells. */
-static inline PetscReal LamFaceThickness(LamRVE rve, PetscInt a, PetscInt b)
-{
-  return PetscMin(LamWallThickness(&rve->micro, a), LamWallThickness(&rve->micro, b));
 }
 
 static inline void LamNodePosition(LamRVE rve, const PetscReal F[9], const PetscReal y[], PetscInt node, PetscReal x[2])
@@ -360,7 +353,7 @@ static inline void LamForgetTangent(LamRVE rve)
    its buckling. */
 static inline PetscReal LamBendingStiffness(LamRVE rve)
 {
-  return PetscPowReal(rve->thinnest, 3.0);
+  return PetscPowReal(rve->mesh.thinnest, 3.0);
 }
 
 /* ---- stability.c ---- */

@@ -177,11 +177,12 @@ static PetscErrorCode Couple(LamSmooth *smooth, PetscInt a, PetscInt b)
 static PetscErrorCode AddNear(LamRVE rve, PetscInt loop, PetscInt i, PetscInt other, PetscInt j, PetscInt reach)
 {
   LamSmooth *smooth = rve->smooth;
-  const PetscInt n = smooth->walls.nodes, *node = smooth->walls.node, *class = rve->mesh.node_class;
+  const LamWalls *walls = &smooth->walls;
+  const PetscInt *class = rve->mesh.node_class;
 
   PetscFunctionBeginUser;
   for (PetscInt k = j - reach; k <= j + reach; ++k)
-    PetscCall(Couple(smooth, class[node[loop * n + (i + n) % n]], class[node[other * n + (k + n) % n]]));
+    PetscCall(Couple(smooth, class[LamWallsNodeAt(walls, loop, i)], class[LamWallsNodeAt(walls, other, k)]));
   PetscFunctionReturn(0);
 }
 
@@ -189,22 +190,22 @@ static PetscErrorCode AddNear(LamRVE rve, PetscInt loop, PetscInt i, PetscInt ot
 static PetscErrorCode AddFacing(LamRVE rve)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt per_face = mesh->ring_nodes / LAM_FACES, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
+  const PetscInt per_face = mesh->face_nodes, beyond = LAM_SPAN_NODES / 2; /* of spans at corners */
   const PetscInt last =
       per_face - (mesh->cuts ? 1 : 0); /* node of a face; in a ring that is whole it begins the next */
 
   PetscFunctionBeginUser;
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt i = 0; i < mesh->ring_nodes; ++i)
+    for (PetscInt i = 0; i < LamMeshRingNodes(mesh, cell); ++i)
       PetscCall(AddNear(rve, 2 * cell, i, 2 * cell, i, LAM_SPAN_NODES - 1));
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt face = 0; face < 3; ++face) {
-      const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    const LamContactFace *face = &rve->contact->faces[f];
+    const PetscInt here = per_face * LamMeshLocalFace(mesh, face->face);
+    const PetscInt there = per_face * LamMeshLocalFace(mesh, face->partner) + last;
 
-      for (PetscInt i = -beyond; other >= 0 && i <= last + beyond; ++i)
-        PetscCall(AddNear(rve, 2 * cell, per_face * face + i, 2 * other, per_face * (face + 3) + last - i, SLIDING));
-    }
+    for (PetscInt i = -beyond; i <= last + beyond; ++i)
+      PetscCall(AddNear(rve, 2 * face->cell, here + i, 2 * face->other, there - i, SLIDING));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -214,7 +215,7 @@ static PetscErrorCode AddCuts(LamRVE rve)
   const LamMesh *mesh = &rve->mesh;
 
   PetscFunctionBeginUser;
-  for (PetscInt cut = 0; cut < mesh->cell_count * mesh->cuts; ++cut)
+  for (PetscInt cut = 0; cut < mesh->tissue->faces * mesh->cuts; ++cut)
     for (PetscInt k = 0; k < 9 * mesh->through; ++k) {
       const PetscInt m = k / 9;
       PetscInt one[2], other[2];
@@ -237,7 +238,7 @@ static PetscErrorCode CreateSystem(LamRVE rve, LamLinear *linear)
 
 static void ForgetEntries(const LamSmooth *smooth)
 {
-  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.loops * smooth->walls.spans; ++k) smooth->entries[k].block[0] = -1;
+  for (PetscInt k = 0; k < LAM_KEPT * smooth->walls.first[smooth->walls.loops]; ++k) smooth->entries[k].block[0] = -1;
 }
 
 /* Makes a system the one in use. */
@@ -337,7 +338,7 @@ typedef struct {
 static const PetscInt *FindEntries(LamRVE rve, const LamTouchBlock *block)
 {
   const LamSmooth *smooth = rve->smooth;
-  const PetscInt span = block->loop * smooth->walls.spans + block->span;
+  const PetscInt span = smooth->walls.first[block->loop] + block->span;
   const PetscInt name[4] = {block->loop, block->span, block->other, block->at};
   LamBlockEntries *entries = &smooth->entries[LAM_KEPT * span + block->at % LAM_KEPT];
   PetscInt pair = 0;
@@ -410,7 +411,7 @@ PetscErrorCode LamSmoothAssemble(LamRVE rve, const LamLoad *load, const PetscRea
 
   PetscFunctionBeginUser;
   if (!smooth->entries) {
-    PetscCall(PetscMalloc1(LAM_KEPT * smooth->walls.loops * smooth->walls.spans, &smooth->entries));
+    PetscCall(PetscMalloc1(LAM_KEPT * smooth->walls.first[smooth->walls.loops], &smooth->entries));
     ForgetEntries(smooth);
   }
   do {

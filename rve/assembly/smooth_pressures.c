@@ -9,7 +9,6 @@
 /* Normal pressure over the strength of one point of a wall. */
 typedef struct {
   LamRVE rve;
-  PetscInt *face_of; /* [cell][3] index of the face that a cell's wall is slave of; -1: none */
   PetscReal *length; /* [hat] reference length */
   LamTouchForces *forces;
   const LamLoad *load;
@@ -20,16 +19,17 @@ typedef struct {
 static PetscInt PlaceOf(const Pressures *p, PetscInt loop, PetscInt span, PetscInt point, PetscReal *place)
 {
   const PetscInt last = 2 * p->rve->mesh.along;
-  PetscInt half, face = LamWallsFace(&p->rve->smooth->walls, span, &half), f;
+  const LamContact *contact = p->rve->contact;
+  PetscInt half, face = LamWallsFace(&p->rve->smooth->walls, loop, span, &half), f;
 
   *place = ((PetscReal)point + 0.5) / LAM_TOUCH_POINTS;
   if (half == last) { /* at a corner */
     half = *place < 0.5 ? last - 1 : 0;
-    if (half == 0) face = (face + 1) % LAM_FACES;
+    if (half == 0) face = LamTissueNext(p->rve->mesh.tissue, face);
     *place = half == 0 ? 0.0 : 1.0;
   }
-  f = loop % 2 || face > 2 ? -1 : p->face_of[3 * (loop / 2) + face];
-  return f < 0 ? -1 : f * p->rve->contact->hats + half;
+  f = loop % 2 ? -1 : contact->at[face];
+  return f < 0 || contact->faces[f].face != face ? -1 : f * contact->hats + half;
 }
 
 static void AddPressure(void *ctx, const LamTouching *touch)
@@ -58,14 +58,14 @@ static void AddLengths(Pressures *p)
 {
   const LamWalls *walls = &p->rve->smooth->walls;
 
-  for (PetscInt k = 0; k < walls->loops * walls->spans; ++k)
-    for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
+  for (PetscInt loop = 0; loop < walls->loops; loop += 2)
+    for (PetscInt k = 0; k < LAM_TOUCH_POINTS * LamWallsSpans(walls, loop); ++k) {
       PetscReal place;
-      const PetscInt hat = PlaceOf(p, k / walls->spans, k % walls->spans, q, &place);
+      const PetscInt hat = PlaceOf(p, loop, k / LAM_TOUCH_POINTS, k % LAM_TOUCH_POINTS, &place);
 
       if (hat < 0) continue;
-      p->length[hat] += (1.0 - place) * walls->weight[LAM_TOUCH_POINTS * k + q];
-      p->length[hat + 1] += place * walls->weight[LAM_TOUCH_POINTS * k + q];
+      p->length[hat] += (1.0 - place) * walls->weight[LAM_TOUCH_POINTS * walls->first[loop] + k];
+      p->length[hat + 1] += place * walls->weight[LAM_TOUCH_POINTS * walls->first[loop] + k];
     }
 }
 
@@ -76,11 +76,8 @@ PetscErrorCode LamSmoothPressures(LamRVE rve, const LamLoad *load, LamTouchForce
 
   PetscFunctionBeginUser;
   *forces = (LamTouchForces){0};
-  PetscCall(PetscMalloc1(3 * rve->mesh.cell_count, &p.face_of));
   PetscCall(PetscCalloc2(contact->count, &p.length, contact->face_count, &p.strength));
-  for (PetscInt k = 0; k < 3 * rve->mesh.cell_count; ++k) p.face_of[k] = -1;
   for (PetscInt f = 0; f < contact->face_count; ++f) {
-    p.face_of[3 * contact->faces[f].cell + contact->faces[f].face] = f;
     contact->faces[f].first = contact->faces[f].low;
     contact->faces[f].last = contact->faces[f].high;
   }
@@ -95,7 +92,6 @@ PetscErrorCode LamSmoothPressures(LamRVE rve, const LamLoad *load, LamTouchForce
     contact->active[h] =
         (PetscBool)(LamContactCarries(contact, h) && contact->lambda[h] > IN_CONTACT * p.strength[h / contact->hats]);
   }
-  PetscCall(PetscFree(p.face_of));
   PetscCall(PetscFree2(p.length, p.strength));
   PetscFunctionReturn(0);
 }

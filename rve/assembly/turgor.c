@@ -64,10 +64,10 @@ void LamLumenAreas(LamRVE rve, const PetscReal y[], PetscReal area[])
     GatherInner(rve, y, e, x);
     area[mesh->cell_of[e]] += LamEdgeArea(inner_edge, (const PetscReal(*)[2])x);
   }
-  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+  for (PetscInt k = 0; k < mesh->tissue->faces * mesh->cuts; ++k) {
     const Chord chord = ChordOf(rve, y, k);
 
-    area[k / LAM_CUTS] += 0.5 * (chord.x[0][0] * chord.x[1][1] - chord.x[0][1] * chord.x[1][0]);
+    area[LamMeshCellOfCut(mesh, k)] += 0.5 * (chord.x[0][0] * chord.x[1][1] - chord.x[0][1] * chord.x[1][0]);
   }
 }
 
@@ -85,12 +85,12 @@ void LamLumenAddGradient(LamRVE rve, const PetscReal y[], const PetscReal factor
         gradient[2 * mesh->node_class[mesh->elements[LAM_ELEMENT_NODES * e + inner_edge[k]]] + d] +=
             f[2 * inner_edge[k] + d];
   }
-  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+  for (PetscInt k = 0; k < mesh->tissue->faces * mesh->cuts; ++k) {
     const Chord chord = ChordOf(rve, y, k);
 
     for (PetscInt s = 0; s < 2; ++s)
       for (PetscInt d = 0; d < 2; ++d)
-        gradient[2 * chord.class[s] + d] += factor[k / LAM_CUTS] * ChordGradient(&chord, s, d);
+        gradient[2 * chord.class[s] + d] += factor[LamMeshCellOfCut(mesh, k)] * ChordGradient(&chord, s, d);
   }
 }
 
@@ -98,9 +98,9 @@ void LamAssembleChords(LamRVE rve, const LamLoad *load, const PetscReal y[], Pet
 {
   LamLinear *linear = rve->linear;
 
-  for (PetscInt k = 0; k < rve->mesh.cell_count * rve->mesh.cuts; ++k) {
+  for (PetscInt k = 0; k < rve->mesh.tissue->faces * rve->mesh.cuts; ++k) {
     const Chord chord = ChordOf(rve, y, k);
-    const PetscReal p = LamTurgor(rve, load, y, k / LAM_CUTS) * load->F[8];
+    const PetscReal p = LamTurgor(rve, load, y, LamMeshCellOfCut(&rve->mesh, k)) * load->F[8];
     const PetscInt one = chord.class[0], other = chord.class[1];
     PetscInt entry[2][2];
 
@@ -159,10 +159,10 @@ static void AddAreaRows(LamRVE rve, const PetscReal y[], PetscReal factor)
         rve->linear->values[row[2 * (class - 1) + d + 1] - 1] += f[2 * inner_edge[k] + d];
     }
   }
-  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k) {
+  for (PetscInt k = 0; k < mesh->tissue->faces * mesh->cuts; ++k) {
     const Chord chord = ChordOf(rve, y, k);
 
-    for (PetscInt s = 0; s < 2 && !LamHasBurst(rve, k / LAM_CUTS); ++s)
+    for (PetscInt s = 0; s < 2 && !LamHasBurst(rve, LamMeshCellOfCut(mesh, k)); ++s)
       for (PetscInt d = 0; d < 2 && chord.class[s] > 0; ++d)
         rve->linear->values[row[2 * (chord.class[s] - 1) + d + 1] - 1] += factor * ChordGradient(&chord, s, d);
   }

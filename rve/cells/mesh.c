@@ -1,75 +1,138 @@
 #include "mesh.h"
-
-/* Corner `k` of the unit hexagon (apothem 1): the start of face k, going counter-clockwise. */
-static void HexagonCorner(PetscReal orientation, PetscInt k, PetscReal corner[2])
-{
-  const PetscReal angle = orientation + (60.0 * (PetscReal)(k % LAM_FACES) - 30.0) * PETSC_PI / 180.0;
-
-  corner[0] = 2.0 / PetscSqrtReal(3.0) * PetscCosReal(angle);
-  corner[1] = 2.0 / PetscSqrtReal(3.0) * PetscSinReal(angle);
-}
-
-static void LatticeVector(PetscReal orientation, PetscInt k, PetscReal L[2])
-{
-  const PetscReal angle = orientation + 60.0 * (PetscReal)k * PETSC_PI / 180.0;
-
-  L[0] = 2.0 * PetscCosReal(angle);
-  L[1] = 2.0 * PetscSinReal(angle);
-}
-
-static void FindNeighbours(const LamMicrostructure *micro, LamMesh *mesh)
-{
-  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k) {
-    PetscInt wraps[2];
-
-    mesh->neighbour[k] = LamLatticeNeighbour(micro, k / LAM_FACES, k % LAM_FACES, wraps, &mesh->held[k]);
-    for (PetscInt d = 0; d < 2; ++d)
-      mesh->image[2 * k + d] = (PetscReal)wraps[0] * mesh->period[0][d] + (PetscReal)wraps[1] * mesh->period[1][d];
-  }
-}
+#include "outline.h"
 
 #define ORIGIN -1 /* representative of nodes prescribed at F X */
 
-static void PlaceEnds(PetscReal grading, LamMesh *mesh)
-{
-  for (PetscInt i = 0; i <= mesh->along; ++i) {
-    const PetscReal s = (PetscReal)i / (PetscReal)mesh->along;
+/* ---- elements along faces ---- */
 
-    mesh->ends[i] = s - grading * PetscSinReal(2.0 * PETSC_PI * s) / (2.0 * PETSC_PI);
-  }
-  mesh->ends[mesh->along] = 1.0;
+/* Elements on the arcs at both ends of a face: as many as their part of it, at least one. */
+static void CountOnArcs(const LamMesh *mesh, const PetscReal flat[2], PetscInt on[2])
+{
+  const PetscReal part[2] = {flat[0], 1.0 - flat[1]};
+
+  for (PetscInt i = 0; i < 2; ++i)
+    on[i] = part[i] > 0.0 ? PetscMax(1, (PetscInt)(part[i] * (PetscReal)mesh->along + 0.5)) : 0;
+  while (on[0] + on[1] >= mesh->along && on[0] + on[1] > 2) --on[on[1] > on[0]];
 }
 
-static void PlaceNodes(const LamMicrostructure *micro, LamMesh *mesh)
+static void PlaceEnds(PetscReal grading, const PetscReal flat[2], LamMesh *mesh, PetscInt face)
 {
-  PetscReal L[2][2];
+  PetscReal *ends = &mesh->ends[face * (mesh->along + 1)];
+  PetscInt on[2], count;
 
-  for (PetscInt k = 0; k < 2; ++k) LatticeVector(micro->orientation, k, L[k]);
-  for (PetscInt k = 0; k < 2 && !micro->is_patch; ++k)
-    for (PetscInt d = 0; d < 2; ++d) mesh->period[k][d] = L[k][d] * (PetscReal)micro->cells[k];
+  CountOnArcs(mesh, flat, on);
+  mesh->flat[face][0] = on[0];
+  mesh->flat[face][1] = mesh->along - on[1];
+  count = mesh->flat[face][1] - on[0];
+  for (PetscInt i = 0; i <= count; ++i) {
+    const PetscReal s = (PetscReal)i / (PetscReal)count;
+    const PetscReal u = s - grading * PetscSinReal(2.0 * PETSC_PI * s) / (2.0 * PETSC_PI);
+
+    ends[on[0] + i] = i == count ? flat[1] : flat[0] + u * (flat[1] - flat[0]);
+  }
+  for (PetscInt i = 0; i < on[0]; ++i) ends[i] = flat[0] * (PetscReal)i / (PetscReal)on[0];
+  for (PetscInt i = 1; i <= on[1]; ++i)
+    ends[mesh->along - on[1] + i] = flat[1] + (1.0 - flat[1]) * (PetscReal)i / (PetscReal)on[1];
+  ends[mesh->along] = 1.0;
+}
+
+/* The element ends of a partner, in opposite direction. */
+static void MirrorEnds(LamMesh *mesh, PetscInt from, PetscInt to)
+{
+  const PetscInt along = mesh->along;
+
+  for (PetscInt i = 0; i < 2; ++i) mesh->flat[to][i] = along - mesh->flat[from][1 - i];
+  for (PetscInt i = 0; i <= along; ++i)
+    mesh->ends[to * (along + 1) + i] = 1.0 - mesh->ends[from * (along + 1) + along - i];
+}
+
+/* ---- nodes ---- */
+
+static void PlaceFace(const LamOutline *outline, PetscInt k, LamMesh *mesh, PetscInt face)
+{
+  for (PetscInt i = 0; i < 3 * mesh->along; ++i) {
+    const PetscReal s = LamMeshShare(mesh, face, (PetscReal)(i / 3) + 0.5 * (PetscReal)(i % 3));
+
+    for (PetscInt r = 0; r < mesh->radial_nodes; ++r)
+      LamOutlinePoint(outline, k, s, (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1),
+                      &mesh->X[2 * LamMeshNode(mesh, LamMeshRing(mesh, face, i / 3, i % 3), r)]);
+  }
+}
+
+static PetscErrorCode PlaceCell(const LamMicrostructure *micro, PetscInt cell, LamMesh *mesh)
+{
+  const PetscReal clearance = 2.0 * (1.0 - mesh->apothem);
+  LamOutline outline;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamOutlineCreate(mesh->tissue, cell, LamWallThickness(micro, cell), clearance, &outline));
+  for (PetscInt k = 0; k < outline.count; ++k) {
+    const PetscInt face = mesh->tissue->first[cell] + k, partner = mesh->tissue->partner[face];
+    PetscReal flat[2];
+
+    mesh->length[face] = outline.length[k];
+    mesh->thickness[face] = outline.thickness[k];
+    LamOutlineFlat(&outline, k, flat);
+    PetscCheck(flat[0] < flat[1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "cell %d: air at both ends of face %d, %.3g apothems long, leaves nothing of it", (int)cell, (int)k,
+               (double)outline.length[k]);
+    if (partner >= 0 && partner < face)
+      MirrorEnds(mesh, partner, face);
+    else
+      PlaceEnds(micro->grading, flat, mesh, face);
+    PetscCheck(mesh->flat[face][0] < mesh->flat[face][1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+               "%d elements along a face: with air at both its ends there must be 3 at least", (int)mesh->along);
+    PlaceFace(&outline, k, mesh, face);
+  }
+  PetscCall(LamOutlineDestroy(&outline));
+  PetscFunctionReturn(0);
+}
+
+/* Lengths of the outer edges, and the extremes of lengths and walls. */
+static void MeasureMesh(LamMesh *mesh)
+{
+  PetscReal low[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, high[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  PetscInt count = 0;
+
+  mesh->shortest = mesh->thinnest = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < mesh->tissue->faces * mesh->along; ++k) {
+    const PetscInt face = k / mesh->along, e = k % mesh->along;
+    const PetscReal *a = &mesh->X[2 * LamMeshOuterNode(mesh, face, 2 * e)];
+    const PetscReal *b = &mesh->X[2 * LamMeshOuterNode(mesh, face, 2 * e + 2)];
+    const PetscReal *ends = &mesh->ends[face * (mesh->along + 1) + e];
+    const PetscBool flat = (PetscBool)(e >= mesh->flat[face][0] && e < mesh->flat[face][1]);
+
+    mesh->edge[k] =
+        flat ? mesh->length[face] * (ends[1] - ends[0]) : PetscSqrtReal(PetscSqr(b[0] - a[0]) + PetscSqr(b[1] - a[1]));
+    mesh->shortest = PetscMin(mesh->shortest, mesh->edge[k]);
+    mesh->longest = PetscMax(mesh->longest, mesh->edge[k]);
+    mesh->thinnest = PetscMin(mesh->thinnest, mesh->thickness[face]);
+  }
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+    if (mesh->tissue->partner[face] < 0) continue;
+    mesh->mean_length += mesh->length[face];
+    ++count;
+  }
+  mesh->mean_length /= (PetscReal)PetscMax(1, count);
   for (PetscInt cell = 0; cell < mesh->cell_count; ++cell) {
-    const PetscReal thickness = LamWallThickness(micro, cell);
-    PetscInt index[2];
+    PetscReal centre[2];
 
-    LamLatticeIndex(micro, cell, index);
-
-    for (PetscInt i = 0; i < 3 * LAM_FACES * mesh->along; ++i) {
-      const PetscInt column = i / 3, face = column / mesh->along;
-      const PetscReal u = LamMeshShare(mesh, (PetscReal)(column % mesh->along) + 0.5 * (PetscReal)(i % 3));
-      PetscReal a[2], b[2];
-
-      HexagonCorner(micro->orientation, face, a);
-      HexagonCorner(micro->orientation, face + 1, b);
-      for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
-        const PetscReal apothem =
-            mesh->apothem - thickness * (1.0 - (PetscReal)r / (PetscReal)(mesh->radial_nodes - 1));
-        PetscReal *X = &mesh->X[2 * LamMeshNode(mesh, cell, LamMeshRing(mesh, column, i % 3), r)];
-
-        for (PetscInt d = 0; d < 2; ++d)
-          X[d] =
-              (PetscReal)index[0] * L[0][d] + (PetscReal)index[1] * L[1][d] + apothem * ((1.0 - u) * a[d] + u * b[d]);
-      }
+    LamTissueCentre(mesh->tissue, cell, centre);
+    for (PetscInt d = 0; d < 2; ++d) {
+      low[d] = PetscMin(low[d], centre[d]);
+      high[d] = PetscMax(high[d], centre[d]);
     }
+  }
+  mesh->size = 1.0 + 0.5 * PetscSqrtReal(PetscSqr(high[0] - low[0]) + PetscSqr(high[1] - low[1]));
+}
+
+static void PlaceImages(LamMesh *mesh)
+{
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+    const PetscInt *wraps = mesh->tissue->wraps[face];
+
+    for (PetscInt d = 0; d < 2; ++d)
+      mesh->image[2 * face + d] = (PetscReal)wraps[0] * mesh->period[0][d] + (PetscReal)wraps[1] * mesh->period[1][d];
   }
 }
 
@@ -79,18 +142,19 @@ static void ConnectElements(LamMesh *mesh)
   static const PetscInt offset[LAM_ELEMENT_NODES][2] = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 0},
                                                         {2, 1}, {1, 2}, {0, 1}, {1, 1}};
 
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt face = 0; face < LAM_FACES; ++face)
-      for (PetscInt i = 0; i < mesh->along; ++i)
-        for (PetscInt m = 0; m < mesh->through; ++m) {
-          const PetscInt e = LamMeshElement(mesh, cell, face, i, m);
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face)
+    for (PetscInt i = 0; i < mesh->along; ++i)
+      for (PetscInt m = 0; m < mesh->through; ++m) {
+        const PetscInt e = LamMeshElement(mesh, face, i, m);
 
-          mesh->cell_of[e] = cell;
-          for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
-            mesh->elements[LAM_ELEMENT_NODES * e + a] =
-                LamMeshNode(mesh, cell, LamMeshRing(mesh, face * mesh->along + i, offset[a][1]), 2 * m + offset[a][0]);
-        }
+        mesh->cell_of[e] = mesh->tissue->cell[face];
+        for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
+          mesh->elements[LAM_ELEMENT_NODES * e + a] =
+              LamMeshNode(mesh, LamMeshRing(mesh, face, i, offset[a][1]), 2 * m + offset[a][0]);
+      }
 }
+
+/* ---- classes ---- */
 
 /* Representative of a node: the root of its class. */
 static PetscInt FirstOf(const PetscInt tied[], PetscInt node)
@@ -109,7 +173,7 @@ static void Tie(LamMesh *mesh, PetscInt one, PetscInt other)
 
 static void TieCuts(LamMesh *mesh)
 {
-  for (PetscInt k = 0; k < mesh->cell_count * mesh->cuts; ++k)
+  for (PetscInt k = 0; k < mesh->tissue->faces * mesh->cuts; ++k)
     for (PetscInt r = 0; r < mesh->radial_nodes; ++r) {
       PetscInt side[2];
 
@@ -121,29 +185,21 @@ static void TieCuts(LamMesh *mesh)
 /* Ties coincident nodes of facing walls, also across the period. */
 static void TieOuterNodes(LamMesh *mesh)
 {
-  const PetscInt last = 2 * mesh->along;
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+    const PetscInt other = mesh->tissue->partner[face];
 
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell)
-    for (PetscInt face = 0; face < LAM_FACES; ++face) {
-      const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
-
-      for (PetscInt i = 0; other >= 0 && i <= last; ++i)
-        Tie(mesh, LamMeshOuterNode(mesh, cell, face, i),
-            LamMeshOuterNode(mesh, other, (face + LAM_FACES / 2) % LAM_FACES, last - i));
-    }
+    for (PetscInt i = 2 * mesh->flat[face][0]; other >= 0 && i <= 2 * mesh->flat[face][1]; ++i)
+      Tie(mesh, LamMeshOuterNode(mesh, face, i), LamMeshOuterNode(mesh, other, 2 * mesh->along - i));
+  }
   for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = FirstOf(mesh->node_class, i);
 }
 
 /* Assigns the nodes of outer walls that follow F to the origin. */
 static void HoldNodes(LamMesh *mesh)
 {
-  for (PetscInt k = 0; k < LAM_FACES * mesh->cell_count; ++k)
-    for (PetscInt i = 0; mesh->held[k] && i < 3 * mesh->along; ++i) {
-      const PetscInt ring = LamMeshRing(mesh, k % LAM_FACES * mesh->along + i / 3, i % 3);
-
-      mesh->node_class[LamMeshNode(mesh, k / LAM_FACES, ring, mesh->radial_nodes - 1)] = ORIGIN;
-    }
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face)
+    for (PetscInt i = 0; mesh->tissue->held[face] && i < 3 * mesh->along; ++i)
+      mesh->node_class[LamMeshNode(mesh, LamMeshRing(mesh, face, i / 3, i % 3), mesh->radial_nodes - 1)] = ORIGIN;
 }
 
 /* Numbers the classes in node order, after the origin if there is one, and sets the shifts. */
@@ -195,6 +251,7 @@ static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
              "grading of the mesh is %g; it must lie between 0 and 1", (double)micro->grading);
   PetscCheck(micro->cells[0] > 0 && micro->cells[1] > 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "a block of %d x %d cells is empty", (int)micro->cells[0], (int)micro->cells[1]);
+  if (micro->tissue) PetscFunctionReturn(0); /* walls that do not fit are found cell by cell */
   for (PetscInt cell = 0; cell < micro->cells[0] * micro->cells[1]; ++cell) {
     const PetscReal t = LamWallThickness(micro, cell), outer = LamOuterApothem(micro);
 
@@ -206,28 +263,32 @@ static PetscErrorCode CheckMicrostructure(const LamMicrostructure *micro)
 
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
 {
+  PetscInt faces;
+
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(mesh, sizeof(*mesh)));
   PetscCall(CheckMicrostructure(micro));
+  PetscCall(LamTissueCreate(micro, &mesh->tissue));
+  faces = mesh->tissue->faces;
   mesh->along = micro->along;
   mesh->through = micro->through;
-  mesh->cell_count = micro->cells[0] * micro->cells[1];
-  mesh->cuts = LamWallsTear(micro) ? LAM_CUTS : 0;
-  mesh->ring_nodes = 2 * LAM_FACES * micro->along + mesh->cuts;
+  mesh->cell_count = mesh->tissue->cells;
+  mesh->cuts = LamWallsTear(micro) ? LAM_FACE_CUTS : 0;
+  mesh->face_nodes = 2 * micro->along + mesh->cuts;
   mesh->radial_nodes = 2 * micro->through + 1;
-  mesh->node_count = mesh->cell_count * mesh->ring_nodes * mesh->radial_nodes;
-  mesh->element_count = mesh->cell_count * LAM_FACES * micro->along * micro->through;
+  mesh->node_count = faces * mesh->face_nodes * mesh->radial_nodes;
+  mesh->element_count = faces * micro->along * micro->through;
   mesh->apothem = LamOuterApothem(micro);
-  mesh->V0 = 2.0 * PetscSqrtReal(3.0) * (PetscReal)mesh->cell_count;
-  PetscCall(PetscMalloc7(mesh->along + 1, &mesh->ends, 2 * mesh->node_count, &mesh->X,
-                         LAM_ELEMENT_NODES * mesh->element_count, &mesh->elements, mesh->element_count, &mesh->cell_of,
-                         mesh->node_count, &mesh->node_class, 2 * mesh->node_count, &mesh->shift, mesh->element_count,
-                         &mesh->has_shift));
-  PetscCall(PetscCalloc3(LAM_FACES * mesh->cell_count, &mesh->neighbour, 2 * LAM_FACES * mesh->cell_count, &mesh->image,
-                         LAM_FACES * mesh->cell_count, &mesh->held));
-  PlaceEnds(micro->grading, mesh);
-  PlaceNodes(micro, mesh);
-  FindNeighbours(micro, mesh);
+  PetscCall(PetscMemcpy(mesh->period, mesh->tissue->period, sizeof(mesh->period)));
+  mesh->V0 = mesh->tissue->area;
+  PetscCall(PetscMalloc6(2 * mesh->node_count, &mesh->X, LAM_ELEMENT_NODES * mesh->element_count, &mesh->elements,
+                         mesh->element_count, &mesh->cell_of, mesh->node_count, &mesh->node_class, 2 * mesh->node_count,
+                         &mesh->shift, mesh->element_count, &mesh->has_shift));
+  PetscCall(PetscCalloc6(faces * (mesh->along + 1), &mesh->ends, faces, &mesh->flat, faces, &mesh->length, faces,
+                         &mesh->thickness, faces * mesh->along, &mesh->edge, 2 * faces, &mesh->image));
+  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell) PetscCall(PlaceCell(micro, cell, mesh));
+  MeasureMesh(mesh);
+  PlaceImages(mesh);
   ConnectElements(mesh);
   for (PetscInt i = 0; i < mesh->node_count; ++i)
     mesh->node_class[i] = i; /* the representative node until NumberClasses */
@@ -243,16 +304,37 @@ PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh)
 PetscErrorCode LamMeshDestroy(LamMesh *mesh)
 {
   PetscFunctionBeginUser;
-  PetscCall(
-      PetscFree7(mesh->ends, mesh->X, mesh->elements, mesh->cell_of, mesh->node_class, mesh->shift, mesh->has_shift));
+  PetscCall(LamTissueDestroy(&mesh->tissue));
+  PetscCall(PetscFree6(mesh->X, mesh->elements, mesh->cell_of, mesh->node_class, mesh->shift, mesh->has_shift));
+  PetscCall(PetscFree6(mesh->ends, mesh->flat, mesh->length, mesh->thickness, mesh->edge, mesh->image));
   PetscCall(PetscFree(mesh->class_X));
-  PetscCall(PetscFree3(mesh->neighbour, mesh->image, mesh->held));
   PetscFunctionReturn(0);
 }
 
-void LamMeshCentre(const LamMesh *mesh, PetscInt cell, PetscReal centre[2])
+LamJunction LamMeshJunction(const LamMesh *mesh, PetscInt face)
 {
-  const PetscInt a = LamMeshOuterNode(mesh, cell, 0, 0), b = LamMeshOuterNode(mesh, cell, LAM_FACES / 2, 0);
+  const LamTissue tissue = mesh->tissue;
+  LamJunction j = {.count = 1, .face = {face}};
+  PetscInt last = face;
 
-  for (PetscInt d = 0; d < 2; ++d) centre[d] = 0.5 * (mesh->X[2 * a + d] + mesh->X[2 * b + d]);
+  while (j.count < LAM_MOST_AROUND) { /* counter-clockwise: across the face before */
+    const PetscInt before = LamTissuePrevious(tissue, last), next = tissue->partner[before];
+
+    if (next == face) j.closed = PETSC_TRUE;
+    if (next < 0 || j.closed) break;
+    for (PetscInt d = 0; d < 2; ++d) j.image[j.count][d] = j.image[j.count - 1][d] + mesh->image[2 * before + d];
+    j.face[j.count++] = last = next;
+  }
+  while (!j.closed && j.count < LAM_MOST_AROUND) { /* clockwise: across the face itself */
+    const PetscInt first = j.face[0], partner = tissue->partner[first];
+
+    if (partner < 0) break;
+    (void)PetscArraymove(&j.face[1], &j.face[0], j.count);
+    (void)PetscArraymove(&j.image[1], &j.image[0], j.count);
+    j.face[0] = LamTissueNext(tissue, partner);
+    for (PetscInt d = 0; d < 2; ++d) j.image[0][d] = j.image[1][d] + mesh->image[2 * first + d];
+    ++j.count;
+    ++j.at;
+  }
+  return j;
 }

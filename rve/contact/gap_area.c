@@ -3,8 +3,8 @@
   wall, so its potential is g times the area enclosed between the walls.
 
   Method. The area is a sum over closed loops: one per face, along its two walls and straight from corner to corner at
-  its ends; and one per junction, the triangle of the corners of its three cells. Loops may differ in cohesion: a face
-  has the smaller one of its two cells, a junction the mean of its three faces. Together the loops of a periodic block
+  its ends; and one per junction, the polygon of the corners of its cells. Loops may differ in cohesion: a face has the
+  smaller one of its two cells, a junction the mean of its faces. Together the loops of a periodic block
   enclose det F V0 minus the cells. At the boundary of a patch there is no junction; the straight end of the face
   closes the gap. Area is bilinear in positions: a sum of c x_a x x_b over pairs of nodes, x x y = x_1 y_2 - x_2 y_1
   and x_a = y_a + F S_a; all derivatives follow from the list of pairs.
@@ -33,69 +33,65 @@ static void AddPair(const LamMesh *mesh, Corner a, Corner b, PetscReal c, PetscR
 }
 
 /* Adds a wall from its start, counter-clockwise around its cell; returns its end. */
-static Corner AddWall(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image, PetscReal cohesion,
-                      LamGapArea *area)
+static Corner AddWall(const LamMesh *mesh, PetscInt face, const PetscReal *image, PetscReal cohesion, LamGapArea *area)
 {
   Corner node[3] = {{0, image}, {0, image}, {0, image}};
 
   for (PetscInt e = 0; e < mesh->along; ++e) {
-    for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, cell, face, 2 * e + i);
+    for (PetscInt i = 0; i < 3; ++i) node[i].node = LamMeshOuterNode(mesh, face, 2 * e + i);
     for (PetscInt i = 0; i < 3; ++i)
       for (PetscInt j = i + 1; j < 3; ++j) AddPair(mesh, node[i], node[j], -0.5 * lam_edge_area[i][j], cohesion, area);
   }
   return node[2];
 }
 
-static Corner StartOf(const LamMesh *mesh, PetscInt cell, PetscInt face, const PetscReal *image)
+static Corner StartOf(const LamMesh *mesh, PetscInt face, const PetscReal *image)
 {
-  return (Corner){LamMeshOuterNode(mesh, cell, face, 0), image};
+  return (Corner){LamMeshOuterNode(mesh, face, 0), image};
 }
 
 /* Both walls of a face, clockwise around the gap: hence the minus signs. */
-static void AddFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face, LamGapArea *area)
+static void AddFace(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt face, LamGapArea *area)
 {
-  const PetscReal *image;
-  const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
-  PetscReal cohesion;
+  const PetscReal *image = &mesh->image[2 * face];
+  const PetscInt partner = mesh->tissue->partner[face];
+  const PetscReal cohesion = LamFaceCohesion(micro, mesh->tissue->cell[face], mesh->tissue->cell[partner]);
   Corner end, other_end;
 
-  if (other < 0) return;
-  cohesion = LamFaceCohesion(micro, cell, other);
-  end = AddWall(mesh, cell, face, NULL, cohesion, area);
-  AddPair(mesh, end, StartOf(mesh, other, face + 3, image), -0.5, cohesion, area);
-  other_end = AddWall(mesh, other, face + 3, image, cohesion, area);
-  AddPair(mesh, other_end, StartOf(mesh, cell, face, NULL), -0.5, cohesion, area);
+  end = AddWall(mesh, face, NULL, cohesion, area);
+  AddPair(mesh, end, StartOf(mesh, partner, image), -0.5, cohesion, area);
+  other_end = AddWall(mesh, partner, image, cohesion, area);
+  AddPair(mesh, other_end, StartOf(mesh, face, NULL), -0.5, cohesion, area);
 }
 
-/* Adds the junction at the start of a face: between a cell, its neighbour b across the previous face and c across this
-   one. */
-static void AddJunction(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt cell, PetscInt face,
-                        LamGapArea *area)
+/* Adds the junction at the start of a face, if the face is the first of those that start there, and no air is. */
+static void AddJunction(const LamMicrostructure *micro, const LamMesh *mesh, PetscInt face, LamGapArea *area)
 {
-  const PetscInt before = (face + LAM_FACES - 1) % LAM_FACES;
-  const PetscReal *image_b, *image_c;
-  const PetscInt b = LamMeshNeighbour(mesh, cell, before, &image_b), c = LamMeshNeighbour(mesh, cell, face, &image_c);
-  PetscReal cohesion;
-  Corner corner[3];
+  const LamJunction j = LamMeshJunction(mesh, face);
+  PetscReal cohesion = 0.0;
 
-  if (b < 0 || c < 0) return;
-  cohesion = (LamFaceCohesion(micro, cell, b) + LamFaceCohesion(micro, cell, c) + LamFaceCohesion(micro, b, c)) / 3.0;
-  corner[0] = StartOf(mesh, cell, face, NULL);
-  corner[1] = StartOf(mesh, b, face + 2, image_b);
-  corner[2] = StartOf(mesh, c, face + 4, image_c);
-  for (PetscInt i = 0; i < 3; ++i) AddPair(mesh, corner[i], corner[(i + 1) % 3], 0.5, cohesion, area);
+  for (PetscInt i = 0; i < j.count; ++i) {
+    if (!j.closed || j.face[i] < face) return;
+    cohesion += LamFaceCohesion(micro, mesh->tissue->cell[j.face[i]], mesh->tissue->cell[j.face[(i + 1) % j.count]]);
+  }
+  for (PetscInt i = 0; i < j.count; ++i) {
+    const PetscInt next = (i + 1) % j.count;
+
+    AddPair(mesh, StartOf(mesh, j.face[i], j.image[i]), StartOf(mesh, j.face[next], j.image[next]), 0.5,
+            cohesion / (PetscReal)j.count, area);
+  }
 }
 
 PetscErrorCode LamGapAreaCreate(const LamMicrostructure *micro, const LamMesh *mesh, LamGapArea *area)
 {
-  const PetscInt most = mesh->cell_count * (3 * (6 * mesh->along + 2) + 2 * 3);
+  const PetscInt faces = mesh->tissue->faces, most = faces / 2 * (6 * mesh->along + 2) + faces;
 
   PetscFunctionBeginUser;
   area->count = 0;
   PetscCall(PetscMalloc1(most, &area->pairs));
-  for (PetscInt cell = 0; cell < mesh->cell_count; ++cell) {
-    for (PetscInt face = 0; face < 3; ++face) AddFace(micro, mesh, cell, face, area);
-    for (PetscInt face = 0; face < 2; ++face) AddJunction(micro, mesh, cell, face, area); /* each junction once */
+  for (PetscInt face = 0; face < faces; ++face) {
+    if (LamTissueIsSlave(mesh->tissue, face)) AddFace(micro, mesh, face, area);
+    AddJunction(micro, mesh, face, area);
   }
   PetscFunctionReturn(0);
 }

@@ -5,24 +5,41 @@
 #define DEEPEST 0.25   /* apothems: deeper points belong to another wall; above the longest step of the solver */
 #define GROUP 8        /* spans with a common box: about the root of their number on the default mesh */
 
-static void ListNodes(const LamMesh *mesh, LamWalls *walls)
+/* Outer walls counter-clockwise; a lumen backwards from a corner, or from a cut, whose nodes are there twice. */
+static void ListNodes(LamWalls *walls)
 {
-  for (PetscInt loop = 0; loop < walls->loops; ++loop)
-    for (PetscInt i = 0; i < walls->nodes; ++i) {
-      /* backwards from a corner, or from a cut, whose nodes are there twice */
-      const PetscInt cell = loop / 2, back = (2 * walls->nodes - i - (mesh->cuts ? 1 : 0)) % walls->nodes;
+  const LamMesh *mesh = walls->mesh;
 
-      walls->node[loop * walls->nodes + i] =
-          loop % 2 ? LamMeshNode(mesh, cell, back, 0) : LamMeshNode(mesh, cell, i, mesh->radial_nodes - 1);
+  for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    const PetscInt n = LamWallsNodes(walls, loop), first = LamMeshFirstRing(mesh, loop / 2);
+
+    for (PetscInt i = 0; i < n; ++i) {
+      const PetscInt back = (2 * n - i - (mesh->cuts ? 1 : 0)) % n;
+
+      walls->node[LamWallsFirstNode(walls, loop) + i] =
+          loop % 2 ? LamMeshNode(mesh, first + back, 0) : LamMeshNode(mesh, first + i, mesh->radial_nodes - 1);
     }
+  }
 }
 
-/* Node in the loop of control point i, and its place in its part: cuts have both nodes of a pair, corners one. */
+static PetscInt GroupsOf(PetscInt spans)
+{
+  return (spans + GROUP - 1) / GROUP;
+}
+
+/* Groups of loops follow each other; the last one of a loop may be incomplete. */
+static PetscInt FirstGroup(const LamWalls *walls, PetscInt loop)
+{
+  return walls->first[loop] / GROUP + loop;
+}
+
+/* Node of control point i of a loop, and its place in its part: cuts have both nodes of a pair, corners one. Loops
+   begin with a part, so that this holds for all of them, also a round before their start and behind their end. */
 static PetscInt NodeOf(const LamWalls *walls, PetscInt i, PetscInt *at)
 {
-  const PetscInt part = LamWallsPart(walls, (i + walls->spans) % walls->spans, at);
+  const PetscInt part = LamWallsPart(walls, i + walls->per_part, at) - 1; /* i is -1 at least */
 
-  return (part * (walls->per_part - (walls->mesh->cuts ? 0 : 1)) + *at) % walls->nodes;
+  return part * (walls->per_part - (walls->mesh->cuts ? 0 : 1)) + *at;
 }
 
 /* Share of the nodes 0..4 of a span in control point i. */
@@ -30,7 +47,7 @@ static void ShareControl(const LamWalls *walls, PetscInt i, PetscInt first, Pets
 {
   const PetscInt last = walls->per_part - 1;
   PetscInt at;
-  const PetscInt node = (NodeOf(walls, i, &at) - first + walls->nodes) % walls->nodes;
+  const PetscInt node = NodeOf(walls, i, &at) - first;
 
   (void)PetscArrayzero(share, LAM_SPAN_NODES);
   if (at == 0 || at == last) { /* at a corner or cut */
@@ -52,7 +69,7 @@ static void ShareSpan(const LamWalls *walls, PetscInt span, PetscBool ended, Lam
   PetscInt at;
   const PetscInt start = NodeOf(walls, span, &at), last = walls->per_part - 1;
 
-  of->first = (start - 2 + at % 2 + walls->nodes) % walls->nodes;
+  of->first = start - 2 + at % 2;
   (void)PetscMemzero(of->point, sizeof(of->point));
   for (PetscInt a = 0; a < LAM_SPAN; ++a) {
     const PetscInt place = at + a - 1, inside = ended ? PetscMax(0, PetscMin(last, place)) : place;
@@ -65,7 +82,7 @@ static void ShareSpan(const LamWalls *walls, PetscInt span, PetscBool ended, Lam
 
 static void ShareNodes(LamWalls *walls)
 {
-  for (PetscInt span = 0; span < walls->spans; ++span) {
+  for (PetscInt span = 0; span < walls->most; ++span) {
     ShareSpan(walls, span, PETSC_FALSE, &walls->of[span]);
     ShareSpan(walls, span, PETSC_TRUE, &walls->ended[span]);
   }
@@ -74,17 +91,19 @@ static void ShareNodes(LamWalls *walls)
 /* Reference lengths of the points, from the contour of the reference positions. */
 static void Weigh(const LamMesh *mesh, LamWalls *walls)
 {
-  for (PetscInt k = 0; k < walls->loops * walls->spans; ++k)
-    for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
-      const PetscInt span = k % walls->spans;
+  for (PetscInt loop = 0; loop < walls->loops; ++loop)
+    for (PetscInt span = 0; span < LamWallsSpans(walls, loop); ++span) {
       PetscReal c[LAM_SPAN][2] = {{0}}, tau[2];
 
       for (PetscInt a = 0; a < LAM_SPAN; ++a)
         for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i)
           for (PetscInt d = 0; d < 2; ++d)
-            c[a][d] += walls->of[span].share[a][i] * mesh->X[2 * LamWallsNode(walls, k / walls->spans, span, i) + d];
-      LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
-      walls->weight[LAM_TOUCH_POINTS * k + q] = PetscSqrtReal(tau[0] * tau[0] + tau[1] * tau[1]) / LAM_TOUCH_POINTS;
+            c[a][d] += walls->of[span].share[a][i] * mesh->X[2 * LamWallsNode(walls, loop, span, i) + d];
+      for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
+        LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
+        walls->weight[LAM_TOUCH_POINTS * (walls->first[loop] + span) + q] =
+            PetscSqrtReal(tau[0] * tau[0] + tau[1] * tau[1]) / LAM_TOUCH_POINTS;
+      }
     }
 }
 
@@ -103,23 +122,32 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
   PetscInt all;
 
   PetscFunctionBeginUser;
-  *walls = (LamWalls){.mesh = mesh, .loops = 2 * mesh->cell_count, .nodes = mesh->ring_nodes};
-  walls->parts = mesh->cuts ? mesh->cuts : LAM_FACES;
-  walls->per_part = 2 * mesh->along * LAM_FACES / walls->parts + 1;
-  walls->spans = walls->parts * walls->per_part;
-  walls->is_patch = micro->is_patch;
+  *walls = (LamWalls){.mesh = mesh, .loops = 2 * mesh->cell_count, .is_patch = micro->is_patch};
+  walls->per_face = mesh->cuts ? LAM_FACE_CUTS : 1;
+  walls->per_part = 2 * mesh->along / walls->per_face + 1;
   walls->apart = PetscMax(3, mesh->along);
-  walls->groups = (walls->spans + GROUP - 1) / GROUP;
-  all = walls->loops * walls->spans;
-  PetscCall(PetscMalloc6(walls->loops * walls->nodes, &walls->node, LAM_TOUCH_POINTS * all, &walls->weight,
-                         mesh->cell_count, &walls->thickness, all, &walls->x, walls->spans, &walls->of, walls->spans,
-                         &walls->ended));
+  PetscCall(PetscMalloc2(walls->loops + 1, &walls->first, 2 * LamMeshFirstRing(mesh, mesh->cell_count), &walls->node));
+  walls->first[0] = 0;
+  for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    const PetscInt spans = LamMeshFaceCount(mesh, loop / 2) * walls->per_face * walls->per_part;
+
+    walls->first[loop + 1] = walls->first[loop] + spans;
+    walls->most = PetscMax(walls->most, spans);
+  }
+  all = walls->first[walls->loops];
+  PetscCall(PetscMalloc5(LAM_TOUCH_POINTS * all, &walls->weight, mesh->cell_count, &walls->thickness, all, &walls->x,
+                         walls->most, &walls->of, walls->most, &walls->ended));
   PetscCall(PetscCalloc1(all, &walls->gone));
-  PetscCall(PetscMalloc3(all, &walls->span, walls->loops, &walls->box, walls->loops * walls->groups, &walls->group));
-  for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = PetscMin(DEEPEST, LamWallThickness(micro, c));
+  PetscCall(PetscMalloc3(all, &walls->span, walls->loops, &walls->box, FirstGroup(walls, walls->loops), &walls->group));
+  for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = DEEPEST;
+  for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+    PetscReal *thickness = &walls->thickness[mesh->tissue->cell[face]];
+
+    *thickness = PetscMin(*thickness, mesh->thickness[face]);
+  }
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineWeightsAt(((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, &walls->at[q]);
-  ListNodes(mesh, walls);
+  ListNodes(walls);
   walls->bevel = -1.0;
   LamWallsRound(walls, 0.0);
   PetscFunctionReturn(0);
@@ -128,7 +156,8 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 PetscErrorCode LamWallsDestroy(LamWalls *walls)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree6(walls->node, walls->weight, walls->thickness, walls->x, walls->of, walls->ended));
+  PetscCall(PetscFree2(walls->first, walls->node));
+  PetscCall(PetscFree5(walls->weight, walls->thickness, walls->x, walls->of, walls->ended));
   PetscCall(PetscFree(walls->gone));
   PetscCall(PetscFree3(walls->span, walls->box, walls->group));
   PetscFunctionReturn(0);
@@ -163,7 +192,7 @@ static void End(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c
 {
   PetscInt at;
 
-  if (!walls->gone[loop * walls->spans + span] && !LamWallsEnd(walls, loop, span)) return;
+  if (!walls->gone[walls->first[loop] + span] && !LamWallsEnd(walls, loop, span)) return;
   (void)LamWallsPart(walls, span, &at);
   for (PetscInt d = 0; d < 2; ++d) {
     if (at == 0) c[0][d] = c[1][d];
@@ -174,10 +203,10 @@ static void End(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c
 
 static inline void GatherSpan(const LamWalls *walls, PetscInt loop, PetscInt span, PetscReal c[LAM_SPAN][2])
 {
-  const PetscInt n = walls->spans;
+  const PetscInt n = LamWallsSpans(walls, loop);
 
   for (PetscInt a = 0; a < LAM_SPAN; ++a) {
-    const PetscInt i = span + a - 1, k = loop * n + (i < 0 ? i + n : i >= n ? i - n : i);
+    const PetscInt i = span + a - 1, k = walls->first[loop] + (i < 0 ? i + n : i >= n ? i - n : i);
 
     c[a][0] = walls->x[k][0];
     c[a][1] = walls->x[k][1];
@@ -235,8 +264,8 @@ static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
 
 static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
 {
-  LamWallSpan *span = &walls->span[loop * walls->spans + i];
-  LamBox *group = &walls->group[loop * walls->groups + i / GROUP];
+  LamWallSpan *span = &walls->span[walls->first[loop] + i];
+  LamBox *group = &walls->group[FirstGroup(walls, loop) + i / GROUP];
   PetscReal c[LAM_SPAN][2];
 
   GatherSpan(walls, loop, i, c);
@@ -250,12 +279,16 @@ static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
 
 void LamWallsTearAt(LamWalls *walls, const PetscBool torn[])
 {
-  for (PetscInt loop = 0; loop < walls->loops; ++loop)
-    for (PetscInt part = 0; part < walls->parts; ++part) {
-      const PetscInt cut = loop % 2 ? LAM_CUTS - 1 - part : (part + 1) % LAM_CUTS; /* at the end of the part */
+  for (PetscInt loop = 0; loop < walls->loops; ++loop) {
+    const PetscInt cuts = LAM_FACE_CUTS * LamMeshFaceCount(walls->mesh, loop / 2);
+    const PetscInt first = LAM_FACE_CUTS * walls->mesh->tissue->first[loop / 2];
 
-      walls->gone[loop * walls->spans + (part + 1) * walls->per_part - 1] = torn[loop / 2 * LAM_CUTS + cut];
+    for (PetscInt part = 0; part < cuts; ++part) {
+      const PetscInt cut = loop % 2 ? cuts - 1 - part : (part + 1) % cuts; /* at the end of the part */
+
+      walls->gone[walls->first[loop] + (part + 1) * walls->per_part - 1] = torn[first + cut];
     }
+  }
 }
 
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
@@ -263,10 +296,12 @@ void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[])
   (void)PetscArraycpy(walls->F, F, 9);
   for (PetscInt loop = 0; loop < walls->loops; ++loop) {
     if (walls->near && !walls->near[loop / 2]) continue;
-    for (PetscInt i = 0; i < walls->spans; ++i) PlaceControl(walls, F, y, loop, i, walls->x[loop * walls->spans + i]);
-    for (PetscInt i = 0; i < walls->spans; ++i) PlaceSpan(walls, loop, i);
+    const PetscInt first = walls->first[loop], spans = LamWallsSpans(walls, loop);
+
+    for (PetscInt i = 0; i < spans; ++i) PlaceControl(walls, F, y, loop, i, walls->x[first + i]);
+    for (PetscInt i = 0; i < spans; ++i) PlaceSpan(walls, loop, i);
     walls->box[loop] = nothing;
-    for (PetscInt g = loop * walls->groups; g < (loop + 1) * walls->groups; ++g)
+    for (PetscInt g = FirstGroup(walls, loop); g < FirstGroup(walls, loop) + GroupsOf(spans); ++g)
       Widen(&walls->box[loop], walls->group[g].low, walls->group[g].high);
   }
 }
@@ -331,9 +366,8 @@ static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2]
 static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->spans;
-  const LamWallSpan *own = &walls->span[p->loop * n + i], *other = &walls->span[p->other * n + j];
-  const LamWallSpan *next = j + 1 == n ? &walls->span[p->other * n] : other + 1;
+  const LamWallSpan *own = &walls->span[walls->first[p->loop] + i], *first = &walls->span[walls->first[p->other]];
+  const LamWallSpan *other = first + j, *next = j + 1 == LamWallsSpans(walls, p->other) ? first : other + 1;
   LamTouching touch;
 
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
@@ -349,7 +383,7 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
     touch.at = j;
     touch.shift[0] = p->shift[0];
     touch.shift[1] = p->shift[1];
-    touch.weight = walls->weight[LAM_TOUCH_POINTS * (p->loop * n + i) + q];
+    touch.weight = walls->weight[LAM_TOUCH_POINTS * (walls->first[p->loop] + i) + q];
     p->visitor(p->ctx, &touch);
   }
 }
@@ -358,19 +392,22 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
 {
   const LamWalls *walls = p->walls;
-  const PetscInt n = walls->spans, end[2] = {PetscMin(n, GROUP * (a + 1)), PetscMin(n, GROUP * (b + 1))};
+  const PetscInt n[2] = {LamWallsSpans(walls, p->loop), LamWallsSpans(walls, p->other)};
+  const PetscInt end[2] = {PetscMin(n[0], GROUP * (a + 1)), PetscMin(n[1], GROUP * (b + 1))};
+  const PetscInt first[2] = {walls->first[p->loop], walls->first[p->other]};
+  const LamBox *group = &walls->group[FirstGroup(walls, p->other) + b];
 
   for (PetscInt i = GROUP * a; i < end[0]; ++i) {
-    const LamBox *box = &walls->span[p->loop * n + i].box;
+    const LamBox *box = &walls->span[first[0] + i].box;
 
-    if (walls->gone[p->loop * n + i]) continue;
+    if (walls->gone[first[0] + i]) continue;
     const LamBox here = Moved(box, p->moved, 0.0), near = Moved(box, p->moved, p->reach);
 
-    if (!Meet(&near, &walls->group[p->other * walls->groups + b])) continue;
+    if (!Meet(&near, group)) continue;
     for (PetscInt j = GROUP * b; j < end[1]; ++j) {
-      const LamWallSpan *other = &walls->span[p->other * n + j];
+      const LamWallSpan *other = &walls->span[first[1] + j];
 
-      if (!walls->gone[p->other * n + j] && !(p->itself && Between(n, i, j) < walls->apart) &&
+      if (!walls->gone[first[1] + j] && !(p->itself && Between(n[0], i, j) < walls->apart) &&
           Meet(&near, &other->box) && !IsBeyond(p, other, here.low, here.high))
         VisitSpans(p, i, j);
     }
@@ -380,13 +417,14 @@ static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
 static void VisitLoops(const Pair *p)
 {
   const LamWalls *walls = p->walls;
+  const LamBox *here = &walls->group[FirstGroup(walls, p->loop)], *there = &walls->group[FirstGroup(walls, p->other)];
 
-  for (PetscInt a = 0; a < walls->groups; ++a) {
-    const LamBox near = Moved(&walls->group[p->loop * walls->groups + a], p->moved, p->reach);
+  for (PetscInt a = 0; a < GroupsOf(LamWallsSpans(walls, p->loop)); ++a) {
+    const LamBox near = Moved(&here[a], p->moved, p->reach);
 
     if (!Meet(&near, &walls->box[p->other])) continue;
-    for (PetscInt b = 0; b < walls->groups; ++b)
-      if (Meet(&near, &walls->group[p->other * walls->groups + b])) VisitGroups(p, a, b);
+    for (PetscInt b = 0; b < GroupsOf(LamWallsSpans(walls, p->other)); ++b)
+      if (Meet(&near, &there[b])) VisitGroups(p, a, b);
   }
 }
 
@@ -458,17 +496,17 @@ void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visit
 PetscBool LamTouchIsFacing(const LamWalls *walls, const LamTouching *touch)
 {
   const LamMesh *mesh = walls->mesh;
-  PetscInt half, face = LamWallsFace(walls, touch->span, &half), cell = touch->loop / 2;
-  const PetscInt neighbour = half == 0                     ? (face + LAM_FACES - 1) % LAM_FACES
-                             : half >= 2 * mesh->along - 1 ? (face + 1) % LAM_FACES
+  PetscInt half, face = LamWallsFace(walls, touch->loop, touch->span, &half);
+  const PetscInt neighbour = half == 0                     ? LamTissuePrevious(mesh->tissue, face)
+                             : half >= 2 * mesh->along - 1 ? LamTissueNext(mesh->tissue, face)
                                                            : face; /* at a corner, also the face across it */
   const PetscInt faces[2] = {face, neighbour};
 
   if (LamTouchIsLumen(touch)) return PETSC_FALSE;
   for (PetscInt k = 0; k < 2; ++k) {
-    const PetscReal *image;
+    const PetscReal *image = &mesh->image[2 * faces[k]];
 
-    if (LamMeshNeighbour(mesh, cell, faces[k], &image) != touch->other / 2) continue;
+    if (LamMeshNeighbour(mesh, faces[k]) != touch->other / 2) continue;
     if (PetscAbsReal(image[0] - touch->shift[0]) + PetscAbsReal(image[1] - touch->shift[1]) < 1e-6) return PETSC_TRUE;
   }
   return PETSC_FALSE;

@@ -33,7 +33,8 @@ typedef struct {
 } LamBox;
 
 typedef struct {
-  PetscInt first;                                    /* of the nodes of the span, which follow each other */
+  PetscInt first;                                    /* of the nodes of the span, which follow each other; may lie
+                                                        before the loop's first one */
   PetscReal share[LAM_SPAN][LAM_SPAN_NODES];         /* control point = sum share node */
   PetscReal point[LAM_TOUCH_POINTS][LAM_SPAN_NODES]; /* point = sum point node */
 } LamSpanNodes;
@@ -49,14 +50,16 @@ typedef struct {
 
 typedef struct {
   const LamMesh *mesh;                   /* borrowed */
-  PetscInt loops, nodes, spans;          /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen; of a loop */
+  PetscInt loops;                        /* loop 2 c: outer walls of cell c, loop 2 c + 1: its lumen */
+  PetscInt *first;                       /* [loops + 1] first span of a loop, of all */
+  PetscInt *node;                        /* [loop][node] nodes of the mesh */
   PetscReal bevel;                       /* of corners, in spans */
-  LamSpanNodes *of, *ended;              /* [span] of any loop; and where the contour ends with it, or begins */
-  PetscInt parts, per_part;              /* of a loop between corners or cuts, and control points of each */
+  LamSpanNodes *of, *ended;              /* [span] of a loop; and where the contour ends with it, or begins */
+  PetscInt per_face, per_part;           /* parts of a face, between corners or cuts, and control points of each */
+  PetscInt most;                         /* spans of the longest loop */
   PetscBool *gone;                       /* [loop][span] between the sides of a torn cut */
   PetscBool is_patch;                    /* no images */
   PetscInt apart;                        /* least distance of points of one loop that may touch, in spans */
-  PetscInt *node;                        /* [loop][node] nodes of the mesh */
   PetscReal *weight;                     /* [loop][span][point] reference length */
   PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
   LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
@@ -65,8 +68,7 @@ typedef struct {
   PetscReal (*x)[2]; /* [loop][span] control points: span k lies between k and k + 1 */
   LamWallSpan *span; /* [loop][span] */
   LamBox *box;       /* [loop] */
-  LamBox *group;     /* [loop][group] of spans following each other */
-  PetscInt groups;   /* of a loop */
+  LamBox *group;     /* [loop][group] of spans following each other; those of a loop begin at first / GROUP + loop */
   PetscReal F[9];
 } LamWalls;
 
@@ -74,7 +76,7 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
 /* Sets the corners for a law of this width. */
 void LamWallsRound(LamWalls *walls, PetscReal width);
 PetscErrorCode LamWallsDestroy(LamWalls *walls);
-/* Sets which cuts are torn: torn [cell][LAM_CUTS]. */
+/* Sets which cuts are torn: torn [cut]. */
 void LamWallsTearAt(LamWalls *walls, const PetscBool torn[]);
 /* Takes the positions of a state. */
 void LamWallsPlace(LamWalls *walls, const PetscReal F[9], const PetscReal y[]);
@@ -91,17 +93,38 @@ typedef void (*LamTouchVisitor)(void *ctx, const LamTouching *touch);
 /* Calls the visitor for all such points; those of the same two spans follow each other. */
 void LamWallsVisit(const LamWalls *walls, PetscReal width, LamTouchVisitor visitor, void *ctx);
 
+/* Spans and nodes of a loop. */
+static inline PetscInt LamWallsSpans(const LamWalls *walls, PetscInt loop)
+{
+  return walls->first[loop + 1] - walls->first[loop];
+}
+static inline PetscInt LamWallsNodes(const LamWalls *walls, PetscInt loop)
+{
+  return LamMeshRingNodes(walls->mesh, loop / 2);
+}
+static inline PetscInt LamWallsFirstNode(const LamWalls *walls, PetscInt loop)
+{
+  return LamMeshFirstRing(walls->mesh, loop / 2) + LamMeshFirstRing(walls->mesh, (loop + 1) / 2);
+}
+/* Mesh node i along a loop, at most one round before its start or behind its end. */
+static inline PetscInt LamWallsNodeAt(const LamWalls *walls, PetscInt loop, PetscInt i)
+{
+  const PetscInt n = LamWallsNodes(walls, loop);
+
+  return walls->node[LamWallsFirstNode(walls, loop) + (i < 0 ? i + n : i >= n ? i - n : i)];
+}
 /* Mesh node k = 0..LAM_SPAN_NODES - 1 of a span. */
 static inline PetscInt LamWallsNode(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt k)
 {
-  return walls->node[loop * walls->nodes + (walls->of[span].first + k) % walls->nodes];
+  return LamWallsNodeAt(walls, loop, walls->of[span].first + k);
 }
 /* Whether a span is the last or the first one before or behind a torn cut. */
 static inline PetscBool LamWallsEnd(const LamWalls *walls, PetscInt loop, PetscInt span)
 {
-  const PetscBool *gone = &walls->gone[loop * walls->spans];
+  const PetscBool *gone = &walls->gone[walls->first[loop]];
+  const PetscInt spans = LamWallsSpans(walls, loop);
 
-  return (PetscBool)(gone[span + 1 == walls->spans ? 0 : span + 1] || gone[span == 0 ? walls->spans - 1 : span - 1]);
+  return (PetscBool)(gone[span + 1 == spans ? 0 : span + 1] || gone[span == 0 ? spans - 1 : span - 1]);
 }
 static inline const LamSpanNodes *LamWallsSpan(const LamWalls *walls, PetscInt loop, PetscInt span)
 {
@@ -113,14 +136,14 @@ static inline PetscInt LamWallsPart(const LamWalls *walls, PetscInt span, PetscI
   *at = span % walls->per_part;
   return span / walls->per_part;
 }
-/* Face of a span of the outer walls, and which of its 2 along halves of edges; at a corner, half 2 along belongs to the
+/* Face of a span of outer walls, and which of its 2 along halves of edges; at a corner, half 2 along belongs to the
    next face, too. */
-static inline PetscInt LamWallsFace(const LamWalls *walls, PetscInt span, PetscInt *half)
+static inline PetscInt LamWallsFace(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt *half)
 {
-  const PetscInt part = LamWallsPart(walls, span, half), per_face = walls->parts / LAM_FACES;
+  const PetscInt part = LamWallsPart(walls, span, half);
 
-  *half += part % per_face * (walls->per_part - 1);
-  return part / per_face;
+  *half += part % walls->per_face * (walls->per_part - 1);
+  return walls->mesh->tissue->first[loop / 2] + part / walls->per_face;
 }
 static inline PetscBool LamTouchIsLumen(const LamTouching *touch)
 {

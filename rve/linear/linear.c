@@ -27,7 +27,7 @@ static void AddClique(PetscInt size, const PetscInt members[], Pairs *pairs)
 
 static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplings, PetscInt lumens, Pairs *pairs)
 {
-  const PetscInt size = couplings->size, inner = mesh->cell_count * mesh->ring_nodes; /* nodes at lumens */
+  const PetscInt size = couplings->size, inner = LamMeshFirstRing(mesh, mesh->cell_count); /* nodes at lumens */
   PetscInt unique = 0;
 
   PetscFunctionBeginUser;
@@ -51,7 +51,7 @@ static PetscErrorCode FindPairs(const LamMesh *mesh, const LamCouplings *couplin
   for (PetscInt k = 0; k < couplings->pair_count; ++k)
     AddCoupled(couplings->pairs[k][0], couplings->pairs[k][1], pairs);
   for (PetscInt i = 0; i < inner && lumens; ++i)
-    AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + i / mesh->ring_nodes, pairs);
+    AddCoupled(mesh->node_class[i * mesh->radial_nodes], pairs->groups - lumens + LamMeshCellOfRing(mesh, i), pairs);
   for (PetscInt g = pairs->classes; g < pairs->groups; ++g) AddCoupled(g, g, pairs);
   PetscCall(PetscSortInt64(pairs->count, pairs->key));
   for (PetscInt k = 0; k < pairs->count; ++k)

@@ -12,7 +12,7 @@ void LamDamageAdd(LamRVE rve, const LamBond *bond, const LamBondPoint *point, La
     damage->torn += spent;
     return;
   }
-  family = rve->contact->faces[point->face].face;
+  family = rve->contact->faces[point->face].family;
   damage->spent[family] += spent;
   damage->toughness[family] += weight * bond->now.energy;
 }

@@ -5,6 +5,7 @@
   together with the notch, through junctions that they share; its length is how far it has run beyond the notch, along
   X1.
 */
+#include <lamella/lattice.h>
 #include "measure.h"
 
 #define BROKEN 0.5
@@ -34,37 +35,22 @@ static PetscReal EndOf(LamRVE rve, PetscInt f)
   const LamContactFace *face = &rve->contact->faces[f];
   PetscReal end = -PETSC_INFINITY;
 
-  for (PetscInt k = 0; k < 2; ++k) {
-    const PetscInt ring = LamMeshRing(mesh, face->face * mesh->along + k * (mesh->along - 1), 2 * k);
-
-    end = PetscMax(end, mesh->X[2 * LamMeshNode(mesh, face->cell, ring, mesh->radial_nodes - 1)]);
-  }
+  for (PetscInt k = 0; k < 2; ++k)
+    end = PetscMax(end, mesh->X[2 * LamMeshOuterNode(mesh, face->face, 2 * k * mesh->along)]);
   return end;
 }
 
-/* Faces of cells: at [cell][face] which of the contact faces it is, -1 for none. */
-static void FindFaces(LamRVE rve, PetscInt at[])
-{
-  const LamContact *contact = rve->contact;
-
-  for (PetscInt i = 0; i < rve->mesh.cell_count * LAM_FACES; ++i) at[i] = -1;
-  for (PetscInt f = 0; f < contact->face_count; ++f) {
-    const LamContactFace *face = &contact->faces[f];
-
-    at[face->cell * LAM_FACES + face->face] = f;
-    at[face->other * LAM_FACES + face->face + LAM_FACES / 2] = f;
-  }
-}
-
 /* Adds the parted faces that share a junction with face f of the queue. */
-static PetscInt AddNext(LamRVE rve, const PetscInt at[], PetscInt f, PetscInt what[], PetscInt queue[], PetscInt count)
+static PetscInt AddNext(LamRVE rve, PetscInt f, PetscInt what[], PetscInt queue[], PetscInt count)
 {
+  const LamTissue tissue = rve->mesh.tissue;
   const LamContactFace *face = &rve->contact->faces[f];
-  const PetscInt sides[2][2] = {{face->cell, face->face}, {face->other, face->face + LAM_FACES / 2}};
+  const PetscInt sides[2] = {face->face, face->partner};
 
   for (PetscInt s = 0; s < 2; ++s)
-    for (PetscInt turn = 1; turn < LAM_FACES; turn += LAM_FACES - 2) {
-      const PetscInt next = at[sides[s][0] * LAM_FACES + (sides[s][1] + turn) % LAM_FACES];
+    for (PetscInt turn = 0; turn < 2; ++turn) {
+      const PetscInt beside = turn ? LamTissuePrevious(tissue, sides[s]) : LamTissueNext(tissue, sides[s]);
+      const PetscInt next = rve->contact->at[beside];
 
       if (next < 0 || what[next] != PARTED) continue;
       what[next] = REACHED;
@@ -77,15 +63,14 @@ PetscErrorCode LamCrackMeasure(LamRVE rve, const LamLoad *load, LamResponse *res
 {
   const PetscInt faces = rve->contact->face_count;
   Faces sums = {.rve = rve};
-  PetscInt *at, *what, *queue, count = 0, notch;
+  PetscInt *what, *queue, count = 0, notch;
   PetscReal tip = -PETSC_INFINITY, end;
 
   PetscFunctionBeginUser;
   if (rve->micro.notch_columns == 0) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(faces, &sums.spent, faces, &sums.toughness));
-  PetscCall(PetscMalloc3(rve->mesh.cell_count * LAM_FACES, &at, faces, &what, faces, &queue));
+  PetscCall(PetscMalloc2(faces, &what, faces, &queue));
   LamLayerVisitPoints(rve, load->F, rve->y, AddPoint, &sums);
-  FindFaces(rve, at);
   for (PetscInt f = 0; f < faces; ++f) {
     const LamContactFace *face = &rve->contact->faces[f];
     const PetscBool cut = LamLatticeIsCut(&rve->micro, face->cell, face->other);
@@ -99,11 +84,11 @@ PetscErrorCode LamCrackMeasure(LamRVE rve, const LamLoad *load, LamResponse *res
   end = tip;
   for (PetscInt k = 0; k < count; ++k) {
     end = PetscMax(end, EndOf(rve, queue[k]));
-    count = AddNext(rve, at, queue[k], what, queue, count);
+    count = AddNext(rve, queue[k], what, queue, count);
   }
   response->crack_faces = count - notch;
   response->crack_length = end - tip;
   PetscCall(PetscFree2(sums.spent, sums.toughness));
-  PetscCall(PetscFree3(at, what, queue));
+  PetscCall(PetscFree2(what, queue));
   PetscFunctionReturn(0);
 }

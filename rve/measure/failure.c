@@ -51,15 +51,15 @@ static void WallPoints(LamRVE rve, const LamLoad *load, const PetscReal y[], Pet
 }
 
 /* Integrals through the wall at the three Gauss points along the face of element column i; adds the kinked volume. */
-static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, PetscInt face, PetscInt i,
-                           PetscReal column[3][INTEGRALS], PetscReal *kinked)
+static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt face, PetscInt i, PetscReal column[3][INTEGRALS],
+                           PetscReal *kinked)
 {
-  const PetscReal turgor = LamTurgor(rve, load, rve->y, cell);
+  const PetscReal turgor = LamTurgor(rve, load, rve->y, rve->mesh.tissue->cell[face]);
 
   for (PetscInt h = 0; h < 3; ++h)
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
   for (PetscInt m = 0; m < rve->mesh.through; ++m) {
-    const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
+    const PetscInt e = LamMeshElement(&rve->mesh, face, i, m);
     LamWallPoint points[LAM_GAUSS];
 
     WallPoints(rve, load, rve->y, e, points);
@@ -77,14 +77,14 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt cell, Petsc
   }
 }
 
-static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[SAMPLES][3], PetscInt cell,
-                         PetscInt face, WallSums *sums)
+static void SumAlongFace(LamRVE rve, const LamLoad *load, const PetscReal share[SAMPLES][3], PetscInt face,
+                         WallSums *sums)
 {
   for (PetscInt q = 0; q < INTEGRALS; ++q) sums->running[q][0] = 0.0;
   for (PetscInt i = 0; i < rve->mesh.along; ++i) {
     PetscReal column[3][INTEGRALS];
 
-    SumThroughWall(rve, load, cell, face, i, column, &sums->kinked);
+    SumThroughWall(rve, load, face, i, column, &sums->kinked);
     for (PetscInt q = 0; q < INTEGRALS; ++q) {
       PetscReal *running = &sums->running[q][i * SAMPLES];
 
@@ -106,20 +106,20 @@ PetscErrorCode LamWallMeasures(LamRVE rve, const LamLoad *load, LamResponse *res
   PetscCall(PetscMalloc1(INTEGRALS * (count + 1), &work));
   for (PetscInt q = 0; q < INTEGRALS; ++q) sums.running[q] = &work[q * (count + 1)];
   SetShares(share);
-  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
-    for (PetscInt face = 0; face < LAM_FACES; ++face) {
-      const PetscReal *reference = sums.running[REFERENCE], *current = sums.running[VOLUME];
-      const PetscReal *pull = sums.running[TENSION], thickness = LamWallThickness(&rve->micro, cell);
+  for (PetscInt face = 0; face < rve->mesh.tissue->faces; ++face) {
+    const PetscReal *reference = sums.running[REFERENCE], *current = sums.running[VOLUME];
+    const PetscReal *pull = sums.running[TENSION], thickness = rve->mesh.thickness[face];
+    const PetscInt family = rve->mesh.tissue->direction[face] % 3;
 
-      SumAlongFace(rve, load, (const PetscReal(*)[3])share, cell, face, &sums);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[STRETCH], reference, &stretch);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[ENERGY], reference, &energy);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, pull, current, &stress);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.running[SOFTNESS], reference, &softness);
-      walls += reference[count];
-      tension[face % 3] += pull[count];
-      volume[face % 3] += current[count];
-    }
+    SumAlongFace(rve, load, (const PetscReal(*)[3])share, face, &sums);
+    LamTakeLargestMean(&rve->mesh, thickness, face, count, sums.running[STRETCH], reference, &stretch);
+    LamTakeLargestMean(&rve->mesh, thickness, face, count, sums.running[ENERGY], reference, &energy);
+    LamTakeLargestMean(&rve->mesh, thickness, face, count, pull, current, &stress);
+    LamTakeLargestMean(&rve->mesh, thickness, face, count, sums.running[SOFTNESS], reference, &softness);
+    walls += reference[count];
+    tension[family] += pull[count];
+    volume[family] += current[count];
+  }
   PetscCall(PetscFree(work));
   response->max_fibre_stretch = stretch.value;
   response->max_wall_energy = energy.value;

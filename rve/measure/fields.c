@@ -110,17 +110,17 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
 PetscErrorCode LamRVEGetCellDifference(LamRVE rve, LamRVEState state, PetscReal *difference)
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt nodes = mesh->node_count / mesh->cell_count; /* of a cell */
+  const PetscInt nodes = LamMeshRingNodes(mesh, 0) * mesh->radial_nodes; /* of a cell */
   const PetscReal *F = state->load.F;
   PetscReal first[2];
 
   PetscFunctionBeginUser;
   *difference = 0.0;
-  LamMeshCentre(mesh, 0, first);
+  LamTissueCentre(mesh->tissue, 0, first);
   for (PetscInt i = nodes; i < mesh->node_count; ++i) {
     PetscReal centre[2], x[2], x0[2];
 
-    LamMeshCentre(mesh, i / nodes, centre);
+    LamTissueCentre(mesh->tissue, LamMeshCellOfNode(mesh, i), centre);
     LamNodePosition(rve, F, state->y, i, x);
     LamNodePosition(rve, F, state->y, i % nodes, x0);
     for (PetscInt d = 0; d < 2; ++d)

@@ -116,14 +116,14 @@ static void TakeShear(LamRVE rve, const LamContactFace *face, PetscReal F33, con
                       const PetscReal length[], LamLargestMean *shear)
 {
   const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
-  const PetscReal h = 1.0 / WINDOW_SAMPLES, thickness = LamFaceThickness(rve, face->cell, face->other);
+  const PetscReal h = 1.0 / WINDOW_SAMPLES, thickness = LamMeshThinner(&rve->mesh, face->face);
 
   for (PetscInt sign = 1; sign >= -1; sign -= 2) {
     force[0] = 0.0;
     for (PetscInt k = 0; k < count; ++k)
       force[k + 1] =
           force[k] + (PetscReal)sign * LamLayerForceBetween(layer, h * (PetscReal)k, h * (PetscReal)(k + 1)) / F33;
-    LamTakeLargestMean(&rve->mesh, thickness, face->cell, face->face, count, force, length, shear);
+    LamTakeLargestMean(&rve->mesh, thickness, face->face, count, force, length, shear);
   }
 }
 
@@ -172,8 +172,9 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   LamContact *contact = rve->contact;
   const PetscInt count = rve->mesh.along * WINDOW_SAMPLES;
   const PetscReal *lambda = &contact->lambda[f * contact->hats];
-  const PetscReal thickness = LamFaceThickness(rve, contact->faces[f].cell, contact->faces[f].other);
-  FamilySums *family = &sums->family[contact->faces[f].face];
+  const LamContactFace *face = &contact->faces[f];
+  const PetscReal thickness = LamMeshThinner(&rve->mesh, face->face);
+  FamilySums *family = &sums->family[face->family];
   const LamMortarSegments *segments = &contact->segments;
   const PetscReal named_gap = sums->named_gap;
   const PetscInt points = LAM_EDGE_POINTS * rve->mesh.along;
@@ -185,23 +186,21 @@ static PetscErrorCode AddFace(LamRVE rve, const LamLoad *load, PetscInt f, Sums 
   for (PetscInt k = 0; k + 1 < segments->count; ++k)
     SampleSegment(&chains, segments->s[k], segments->s[k + 1], segments->master[k], family, sums);
   if (sums->named_gap > named_gap) {
-    sums->gap_place[0] = (PetscReal)contact->faces[f].cell;
-    sums->gap_place[1] = (PetscReal)contact->faces[f].face;
-    sums->gap_place[2] = LamMeshShare(&rve->mesh, sums->gap_at);
+    sums->gap_place[0] = (PetscReal)face->cell;
+    sums->gap_place[1] = (PetscReal)LamMeshLocalFace(&rve->mesh, face->face);
+    sums->gap_place[2] = LamMeshShare(&rve->mesh, face->face, sums->gap_at);
   }
   FaceForce(&chains, lambda, segments->count ? segments->s[0] : 0.0,
-            segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * contact->faces[f].cohesion,
-            load->F[8], sums->layer.normal ? &sums->layer.normal[points * f] : NULL, force, length);
+            segments->count ? segments->s[segments->count - 1] : 0.0, load->cohesion * face->cohesion, load->F[8],
+            sums->layer.normal ? &sums->layer.normal[points * f] : NULL, force, length);
   for (PetscInt e = 0; e < chains.n; ++e) J0 += chains.J0[e];
   family->length += J0;
   family->current_length += length[count];
   family->force += force[count];
   if (segments->count == 0) family->open += J0;
   AddJumps(&chains, contact->hats, (const PetscReal(*)[2])contact->x, sums->jumps);
-  LamTakeLargestMean(&rve->mesh, thickness, contact->faces[f].cell, contact->faces[f].face, count, force, length,
-                     &sums->traction);
-  if (sums->layer.shear)
-    TakeShear(rve, &contact->faces[f], load->F[8], &sums->layer.shear[points * f], force, length, &sums->shear);
+  LamTakeLargestMean(&rve->mesh, thickness, face->face, count, force, length, &sums->traction);
+  if (sums->layer.shear) TakeShear(rve, face, load->F[8], &sums->layer.shear[points * f], force, length, &sums->shear);
   for (PetscInt j = 0; j < contact->hats; ++j) {
     const PetscReal closed = ClosedLength(contact, sums->layer.held, f * contact->hats + j);
 
@@ -271,8 +270,8 @@ static PetscInt Rank(const LamContact *contact, const PetscReal held[], PetscInt
 
 static PetscBool IsHeld(const LamMesh *mesh, PetscInt cell)
 {
-  for (PetscInt k = LAM_FACES * cell; k < LAM_FACES * (cell + 1); ++k)
-    if (mesh->held[k]) return PETSC_TRUE;
+  for (PetscInt k = mesh->tissue->first[cell]; k < mesh->tissue->first[cell + 1]; ++k)
+    if (mesh->tissue->held[k]) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -370,12 +369,10 @@ void LamBondedIndicators(LamRVE rve, const LamLoad *load, LamResponse *response)
   PetscInt edges = 0;
 
   for (PetscInt e = mesh->through - 1; e < mesh->element_count; e += mesh->through) {
+    const PetscInt face = LamMeshFaceOfElement(mesh, e), at = e / mesh->through % mesh->along;
     PetscReal x[LAM_ELEMENT_NODES][2], chord[2];
-    const PetscReal *image;
 
-    if (LamMeshFaceOfElement(mesh, e) > 2 ||
-        LamMeshNeighbour(mesh, mesh->cell_of[e], LamMeshFaceOfElement(mesh, e), &image) < 0)
-      continue;
+    if (!LamTissueIsSlave(mesh->tissue, face) || at < mesh->flat[face][0] || at >= mesh->flat[face][1]) continue;
     LamGatherElement(rve, load->F, rve->y, e, x);
     for (PetscInt d = 0; d < 2; ++d) chord[d] = x[2][d] - x[1][d]; /* the ends of the outer edge */
     fabric[0] += chord[1] * chord[1] / LamDot(chord, chord);

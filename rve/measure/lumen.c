@@ -74,20 +74,24 @@ PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *
 {
   const LamMesh *mesh = &rve->mesh;
   const PetscInt apart = mesh->cuts ? 3 : 2;
+  PetscInt most = 0;
   PetscReal(*x)[2];
 
   PetscFunctionBeginUser;
   *cell = -1;
-  PetscCall(PetscMalloc1(mesh->ring_nodes, &x));
+  for (PetscInt c = 0; c < mesh->cell_count; ++c) most = PetscMax(most, LamMeshRingNodes(mesh, c));
+  PetscCall(PetscMalloc1(most, &x));
   for (PetscInt c = 0; c < mesh->cell_count && *cell < 0; ++c) {
-    for (PetscInt i = 0; i < mesh->ring_nodes; ++i) {
-      const PetscReal *position = &y[2 * mesh->node_class[(c * mesh->ring_nodes + i) * mesh->radial_nodes]];
+    const PetscInt n = LamMeshRingNodes(mesh, c), first = LamMeshFirstRing(mesh, c);
+
+    for (PetscInt i = 0; i < n; ++i) {
+      const PetscReal *position = &y[2 * mesh->node_class[LamMeshNode(mesh, first + i, 0)]];
 
       x[i][0] = position[0];
       x[i][1] = position[1];
     }
-    if (SignedArea(mesh->ring_nodes, (const PetscReal(*)[2])x) <= 0.0 ||
-        CrossesItself(mesh->ring_nodes, (const PetscReal(*)[2])x, apart))
+    if (SignedArea(n, (const PetscReal(*)[2])x) <= 0.0 ||
+        CrossesItself(n, (const PetscReal(*)[2])x, apart))
       *cell = c;
   }
   PetscCall(PetscFree(x));

@@ -53,7 +53,7 @@ static inline PetscReal LamLargestMeanValue(const LamLargestMean *largest)
 }
 /* Updates the largest mean with one face, for windows of length `thickness`. integral, length: running integrals [count
    + 1] over sub-intervals; all elements along the face have equally many. */
-void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
+void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt face, PetscInt count,
                         const PetscReal integral[], const PetscReal length[], LamLargestMean *largest);
 /* Bonded tissue: mean normal traction per face family, largest normal and shear traction (Cauchy) and their locations.
  */

@@ -2,12 +2,13 @@
   Tractions on the bonded interfaces between cells.
 
   Method. In equilibrium the internal forces of a cell at the nodes of an outer face equal the loads exerted by its
-  neighbour. Where three cells meet, the forces f_A, f_B, f_C (sum zero) are shared among the three faces by the split
-  of least norm, t_AB = (f_A - f_B)/3. The traction field t = sum N_j t_j on the face solves the mass system int N_i
-  N_j ds t_j = f_i on the current quadratic edges, so it is exactly equivalent to the nodal forces. Exceptions are
-  face ends that a patch prescribes: their forces contain the reaction, so the traction there is extrapolated. Normal
-  component in tension positive, shear component without sign, per current length (Cauchy). Point values at the lumen
-  corners diverge under refinement; averages over a length of one wall thickness converge.
+  neighbour. Where n cells meet, the forces f_i (sum zero) are shared among the faces by the split of least norm, in the
+  order around the junction t_i = sum_j ((n - 1)/2 - j)/n f_{i+j}; of three cells t_AB = (f_A - f_B)/3. The traction
+  field t = sum N_j t_j on the face solves the mass system int N_i N_j ds t_j = f_i on the current quadratic edges, so
+  it is exactly equivalent to the nodal forces. Exceptions are face ends that a patch prescribes: their forces contain
+  the reaction, so the traction there is extrapolated. Normal component in tension positive, shear component without
+  sign, per current length (Cauchy). Point values at the lumen corners diverge under refinement; averages over a length
+  of one wall thickness converge.
 */
 #include "measure.h"
 #include "mortar_impl.h"
@@ -33,32 +34,40 @@ static void NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
   }
 }
 
-/* Whether three cells meet at node i of a face; at the boundary of a patch there are two. */
-static PetscBool IsJunctionOfThree(const LamMesh *mesh, PetscInt cell, PetscInt face, PetscInt i)
+/* The load on the cell of a face at its start, which its neighbour there exerts. */
+static void JunctionLoad(const LamMesh *mesh, const PetscReal force[], PetscInt face, PetscReal f[2])
 {
-  const PetscInt next = i == 0 ? face + LAM_FACES - 1 : face + 1;
-  const PetscReal *image;
+  const LamJunction j = LamMeshJunction(mesh, face);
 
-  return (PetscBool)(i % (2 * mesh->along) == 0 && LamMeshNeighbour(mesh, cell, next % LAM_FACES, &image) >= 0);
+  f[0] = f[1] = 0.0;
+  for (PetscInt i = 0; i < j.count; ++i) {
+    const PetscInt node = LamMeshOuterNode(mesh, j.face[i], 0);
+    const PetscReal share = j.closed   ? (0.5 * (PetscReal)(j.count - 1) - (PetscReal)i) / (PetscReal)j.count
+                            : i < j.at ? -0.5
+                                       : 0.5;
+
+    for (PetscInt d = 0; d < 2; ++d) f[d] += share * force[2 * node + d];
+  }
 }
 
 /* Positions x[2 along + 1][2] and loads f likewise of one face, counter-clockwise. */
-static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], PetscInt cell, PetscInt face,
-                      PetscReal x[][2], PetscReal f[][2])
+static void FaceLoads(LamRVE rve, const LamLoad *load, const PetscReal force[], PetscInt face, PetscReal x[][2],
+                      PetscReal f[][2])
 {
   const LamMesh *mesh = &rve->mesh;
-  const PetscInt last = 2 * mesh->along;
-  const PetscReal *image;
-  const PetscInt other = LamMeshNeighbour(mesh, cell, face, &image);
+  const PetscInt last = 2 * mesh->along, partner = mesh->tissue->partner[face];
+  PetscReal end[2];
 
   for (PetscInt i = 0; i <= last; ++i) {
-    const PetscInt node = LamMeshOuterNode(mesh, cell, face, i);
-    const PetscInt opposite = LamMeshOuterNode(mesh, other, (face + LAM_FACES / 2) % LAM_FACES, last - i);
-    const PetscReal share = IsJunctionOfThree(mesh, cell, face, i) ? 3.0 : 2.0;
+    const PetscInt node = LamMeshOuterNode(mesh, face, i), opposite = LamMeshOuterNode(mesh, partner, last - i);
 
     LamNodePosition(rve, load->F, rve->y, node, x[i]);
-    for (PetscInt d = 0; d < 2; ++d) f[i][d] = (force[2 * node + d] - force[2 * opposite + d]) / share;
+    for (PetscInt d = 0; d < 2; ++d) f[i][d] = 0.5 * (force[2 * node + d] - force[2 * opposite + d]);
   }
+  if (mesh->flat[face][0] == 0) JunctionLoad(mesh, force, face, f[0]);
+  if (mesh->flat[face][1] < mesh->along) return;
+  JunctionLoad(mesh, force, partner, end); /* on the other cell */
+  for (PetscInt d = 0; d < 2; ++d) f[last][d] = -end[d];
 }
 
 /* Quadratic edge functions at xi in [-1, 1], and the current tangent dx/dxi. */
@@ -72,9 +81,9 @@ static void EdgePoint(const PetscReal x[][2], PetscReal xi, PetscReal N[3], Pets
 
 /* Whether node i of a face is prescribed at F X: its force then contains the reaction, which does not belong to the
    face. */
-static PetscBool IsHeld(const LamRVE rve, PetscInt cell, PetscInt face, PetscInt i)
+static PetscBool IsHeld(const LamRVE rve, PetscInt face, PetscInt i)
 {
-  const PetscInt node = LamMeshOuterNode(&rve->mesh, cell, face, i);
+  const PetscInt node = LamMeshOuterNode(&rve->mesh, face, i);
 
   return (PetscBool)(rve->micro.is_patch && rve->mesh.node_class[node] == 0);
 }
@@ -131,7 +140,9 @@ typedef struct {
   PetscReal *length;                /* current */
 } FaceSums;
 
-static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t[][2], FaceSums *sums)
+/* flat: elements of the face that lie on the other wall; others carry nothing. */
+static void Accumulate(PetscInt along, const PetscInt flat[2], const PetscReal x[][2], const PetscReal t[][2],
+                       FaceSums *sums)
 {
   const PetscReal half = 1.0 / SAMPLES; /* of a sub-interval */
 
@@ -139,6 +150,7 @@ static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t
   for (PetscInt e = 0; e < along; ++e)
     for (PetscInt s = 0; s < SAMPLES; ++s) {
       const PetscInt k = e * SAMPLES + s;
+      const PetscBool carries = (PetscBool)(e >= flat[0] && e < flat[1]);
       PetscReal tn = 0.0, ts = 0.0, ds = 0.0;
 
       for (PetscInt side = -1; side <= 1; side += 2) { /* two Gauss points: exact for t.n and t.tangent, cubics */
@@ -147,7 +159,7 @@ static void Accumulate(PetscInt along, const PetscReal x[][2], const PetscReal t
 
         EdgePoint(&x[2 * e], xi, N, tangent);
         /* outward normal times ds/dxi is (tangent_2, -tangent_1): the face runs counter-clockwise around its cell */
-        for (PetscInt i = 0; i < 3; ++i) {
+        for (PetscInt i = 0; i < 3 && carries; ++i) {
           tn += N[i] * (t[2 * e + i][0] * tangent[1] - t[2 * e + i][1] * tangent[0]);
           ts += N[i] * (t[2 * e + i][0] * tangent[0] + t[2 * e + i][1] * tangent[1]);
         }
@@ -170,8 +182,8 @@ static PetscReal RunningAt(PetscInt count, const PetscReal integral[], PetscReal
 
 /* Largest mean over windows, and the window's middle. window: fraction of the face, at most the whole. Each window
    begins or ends at an end of a sub-interval, so those flush with either end of the face are included. */
-static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscReal window, const PetscReal integral[],
-                                   const PetscReal length[], PetscReal *middle)
+static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt face, PetscInt count, PetscReal window,
+                                   const PetscReal integral[], const PetscReal length[], PetscReal *middle)
 {
   const PetscReal samples = (PetscReal)count / (PetscReal)mesh->along;
   PetscReal largest = -PETSC_MAX_REAL, named = -PETSC_MAX_REAL;
@@ -180,11 +192,12 @@ static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscRea
   if (window >= 1.0) return integral[count] / length[count];
   for (PetscInt k = 0; k <= count; ++k)
     for (PetscInt side = -1; side <= 1; side += 2) {
-      const PetscReal share = LamMeshShare(mesh, (PetscReal)k / samples), other = share + (PetscReal)side * window;
+      const PetscReal share = LamMeshShare(mesh, face, (PetscReal)k / samples),
+                      other = share + (PetscReal)side * window;
       PetscReal at, mean;
 
       if (other < 0.0 || other > 1.0) continue;
-      at = samples * LamMeshPlace(mesh, other);
+      at = samples * LamMeshPlace(mesh, face, other);
       mean = (RunningAt(count, integral, at) - integral[k]) / (RunningAt(count, length, at) - length[k]);
       largest = PetscMax(largest, mean);
       if (!LamExceeds(mean, named)) continue;
@@ -194,57 +207,64 @@ static PetscReal LargestWindowMean(const LamMesh *mesh, PetscInt count, PetscRea
   return largest;
 }
 
-void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt cell, PetscInt face, PetscInt count,
+void LamTakeLargestMean(const LamMesh *mesh, PetscReal thickness, PetscInt face, PetscInt count,
                         const PetscReal integral[], const PetscReal length[], LamLargestMean *largest)
 {
   PetscReal middle;
-  const PetscReal window = thickness / LamFaceLength(mesh);
-  const PetscReal mean = LargestWindowMean(mesh, count, window, integral, length, &middle);
+  const PetscReal window = thickness / mesh->length[face];
+  const PetscReal mean = LargestWindowMean(mesh, face, count, window, integral, length, &middle);
 
   largest->value = PetscMax(largest->value, mean);
   if (!LamExceeds(mean, largest->named)) return;
   largest->named = mean;
-  largest->place[0] = (PetscReal)cell;
-  largest->place[1] = (PetscReal)face;
+  largest->place[0] = (PetscReal)mesh->tissue->cell[face];
+  largest->place[1] = (PetscReal)LamMeshLocalFace(mesh, face);
   largest->place[2] = middle;
+}
+
+/* The tractions t of the part of a face that lies on the other wall, from the loads on its nodes. */
+static PetscErrorCode FlatTraction(LamRVE rve, PetscInt face, const PetscReal x[][2], PetscReal t[][2], PetscReal M[],
+                                   PetscReal b[], PetscBLASInt pivots[])
+{
+  const PetscInt *flat = rve->mesh.flat[face], first = 2 * flat[0];
+  const PetscBool held[2] = {IsHeld(rve, face, first), IsHeld(rve, face, 2 * flat[1])};
+
+  PetscFunctionBeginUser;
+  PetscCall(FaceTraction(flat[1] - flat[0], held, &x[first], &t[first], M, b, pivots));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamFaceTractions(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
-  const PetscInt along = rve->mesh.along, n = 2 * along + 1, count = along * SAMPLES;
+  const LamMesh *mesh = &rve->mesh;
+  const PetscInt n = 2 * mesh->along + 1, count = mesh->along * SAMPLES;
   PetscReal *force, (*x)[2], (*t)[2], *M, *b;
   PetscBLASInt *pivots;
   LamLargestMean normal = LAM_NO_MEAN, shear = LAM_NO_MEAN;
   FaceSums sums;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc6(2 * rve->mesh.node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b, n, &pivots));
+  PetscCall(PetscMalloc6(2 * mesh->node_count, &force, n, &x, n, &t, n * n, &M, 2 * n, &b, n, &pivots));
   PetscCall(
       PetscMalloc4(count + 1, &sums.normal, count + 1, &sums.shear, count + 1, &sums.back, count + 1, &sums.length));
   NodeForces(rve, load, force);
-  for (PetscInt face = 0; face < 3; ++face) {
+  for (PetscInt family = 0; family < 3; ++family) {
     PetscReal total = 0.0, length = 0.0;
 
-    for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
-      const PetscReal *image;
-      const PetscInt other = LamMeshNeighbour(&rve->mesh, cell, face, &image);
-      PetscBool held[2];
-      PetscReal thickness;
+    for (PetscInt face = 0; face < mesh->tissue->faces; ++face) {
+      const PetscReal thickness = LamMeshThinner(mesh, face);
 
-      if (other < 0) continue;
-      thickness = LamFaceThickness(rve, cell, other);
-      held[0] = IsHeld(rve, cell, face, 0);
-      held[1] = IsHeld(rve, cell, face, n - 1);
-      FaceLoads(rve, load, force, cell, face, x, t);
-      PetscCall(FaceTraction(along, held, (const PetscReal(*)[2])x, t, M, b, pivots));
-      Accumulate(along, (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
+      if (!LamTissueIsSlave(mesh->tissue, face) || mesh->tissue->direction[face] != family) continue;
+      FaceLoads(rve, load, force, face, x, t);
+      PetscCall(FlatTraction(rve, face, (const PetscReal(*)[2])x, t, M, b, pivots));
+      Accumulate(mesh->along, mesh->flat[face], (const PetscReal(*)[2])x, (const PetscReal(*)[2])t, &sums);
       total += sums.normal[count];
       length += sums.length[count];
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.normal, sums.length, &normal);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.shear, sums.length, &shear);
-      LamTakeLargestMean(&rve->mesh, thickness, cell, face, count, sums.back, sums.length, &shear);
+      LamTakeLargestMean(mesh, thickness, face, count, sums.normal, sums.length, &normal);
+      LamTakeLargestMean(mesh, thickness, face, count, sums.shear, sums.length, &shear);
+      LamTakeLargestMean(mesh, thickness, face, count, sums.back, sums.length, &shear);
     }
-    response->mean_face_traction[face] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
+    response->mean_face_traction[family] = length > 0.0 ? total / length : NAN; /* a narrow patch may lack a family */
   }
   response->max_traction = LamLargestMeanValue(&normal);
   response->max_lamella_shear = LamLargestMeanValue(&shear);

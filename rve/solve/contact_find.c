@@ -42,7 +42,7 @@ static const LamLoad *LoadOf(const LamLoad *load, const LamBorder *border)
 static PetscBool IsDeep(LamRVE rve, const LamLoad *load)
 {
   const LamDepths depths = LamFindDepths(rve, load);
-  const PetscReal most = PetscMin(EDGE_SHARE * LamLongestEdge(&rve->mesh), WALL_SHARE * rve->thinnest);
+  const PetscReal most = PetscMin(EDGE_SHARE * rve->mesh.longest, WALL_SHARE * rve->mesh.thinnest);
 
   return (PetscBool)(PetscMax(depths.facing, depths.other) > most);
 }

@@ -22,7 +22,7 @@ static void CloseClearance(LamRVE rve, const LamLoad *load)
   for (PetscInt i = 0; i < mesh->node_count; ++i) {
     PetscReal *y = &rve->y[2 * mesh->node_class[i]], centre[2];
 
-    LamMeshCentre(mesh, i / (mesh->ring_nodes * mesh->radial_nodes), centre);
+    LamTissueCentre(mesh->tissue, LamMeshCellOfNode(mesh, i), centre);
     for (PetscInt d = 0; d < 2; ++d)
       for (PetscInt J = 0; J < 2; ++J) y[d] += swelling * load->F[3 * d + J] * (mesh->X[2 * i + J] - centre[J]);
   }

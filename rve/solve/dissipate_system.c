@@ -11,7 +11,7 @@ PetscErrorCode LamDissipationCreate(LamRVE rve, const LamDissipationPath *path, 
 
   PetscFunctionBeginUser;
   *t = (LamDissipation){.rve = rve, .path = path};
-  t->face = rve->micro.lamella.energy * LamFaceLength(&rve->mesh);
+  t->face = rve->micro.lamella.energy * rve->mesh.mean_length;
   for (PetscInt i = 0; i < 9; ++i) t->along[i] = path->to.F[i] - path->from.F[i];
   PetscCall(LamBorderCreate(rve, &path->to, &none, &t->border));
   PetscCall(PetscMalloc5(rve->length, &t->gradient, LAM_F_COUNT * n, &t->R, n, &t->column, 3 * n + 6, &t->rhs, 3 * n,

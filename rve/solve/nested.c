@@ -29,9 +29,9 @@ static void Quadratic(PetscReal place, PetscInt elements, PetscInt *first, Petsc
 }
 
 /* Position on `other`, in elements along a face, of node or hat `half` of a face of `mesh`, two per element. */
-static PetscReal PlaceIn(const LamMesh *other, const LamMesh *mesh, PetscInt half)
+static PetscReal PlaceIn(const LamMesh *other, const LamMesh *mesh, PetscInt face, PetscInt half)
 {
-  return LamMeshPlace(other, LamMeshShare(mesh, 0.5 * (PetscReal)half));
+  return LamMeshPlace(other, face, LamMeshShare(mesh, face, 0.5 * (PetscReal)half));
 }
 
 /* Interpolates the coarse solution at a node of the fine mesh. */
@@ -40,20 +40,19 @@ static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[],
 {
   const LamMesh *mesh = &coarse->mesh;
   const PetscInt radial = node % fine->radial_nodes, around = node / fine->radial_nodes;
-  const PetscInt cell = around / fine->ring_nodes, half = around % fine->ring_nodes;
-  const PetscInt face = half / (2 * fine->along);
+  const PetscInt face = around / fine->face_nodes;
   PetscInt first[2];
   PetscReal N[2][3];
 
-  Quadratic(PlaceIn(mesh, fine, half % (2 * fine->along)), mesh->along, &first[0], N[0]);
+  Quadratic(PlaceIn(mesh, fine, face, around % fine->face_nodes), mesh->along, &first[0], N[0]);
   Quadratic((PetscReal)(radial * mesh->through) / (PetscReal)(fine->radial_nodes - 1), mesh->through, &first[1], N[1]);
   x[0] = x[1] = 0.0;
   for (PetscInt a = 0; a < 3; ++a)
     for (PetscInt b = 0; b < 3; ++b) {
-      const PetscInt ring = (2 * mesh->along * face + first[0] + a) % mesh->ring_nodes;
+      const PetscInt ring = LamMeshRing(mesh, face, first[0] / 2, a);
       PetscReal at[2];
 
-      LamNodePosition(coarse, load->F, y, (cell * mesh->ring_nodes + ring) * mesh->radial_nodes + first[1] + b, at);
+      LamNodePosition(coarse, load->F, y, LamMeshNode(mesh, ring, first[1] + b), at);
       for (PetscInt d = 0; d < 2; ++d) x[d] += N[0][a] * N[1][b] * at[d];
     }
 }
@@ -79,15 +78,15 @@ static void ProlongContact(LamRVE coarse, const LamRVEState from, LamRVE rve)
     LamContactFace *face = &rve->contact->faces[f];
 
     for (PetscInt j = 0; j < hats; ++j) {
-      const PetscReal at = 2.0 * PlaceIn(&coarse->mesh, &rve->mesh, j);
+      const PetscReal at = 2.0 * PlaceIn(&coarse->mesh, &rve->mesh, face->face, j);
       const PetscInt k = PetscMin((PetscInt)at, coarse_hats - 2);
       const PetscReal *lambda = &from->lambda[f * coarse_hats + k];
 
       rve->contact->lambda[f * hats + j] = lambda[0] + (at - (PetscReal)k) * (lambda[1] - lambda[0]);
     }
     if (from->hats[f][0] > from->hats[f][1]) continue;
-    face->first = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, from->hats[f][0]) + 0.5);
-    face->last = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, from->hats[f][1]) + 0.5);
+    face->first = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, face->face, from->hats[f][0]) + 0.5);
+    face->last = (PetscInt)(2.0 * PlaceIn(&rve->mesh, &coarse->mesh, face->face, from->hats[f][1]) + 0.5);
   }
 }
 
@@ -106,11 +105,11 @@ static void FitStresses(LamRVE rve, PetscInt e, PetscReal p[4], PetscReal s[4])
 }
 
 /* Interpolates the independent stresses of element (i, m) of a face of the fine mesh. */
-static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE rve, PetscInt cell, PetscInt face,
-                          PetscInt i, PetscInt m)
+static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE rve, PetscInt face, PetscInt i,
+                          PetscInt m)
 {
   const LamMesh *mesh = &coarse->mesh;
-  const PetscInt e = LamMeshElement(&rve->mesh, cell, face, i, m);
+  const PetscInt e = LamMeshElement(&rve->mesh, face, i, m);
   LamElementStress *stress = &rve->stress[e];
 
   for (PetscInt k = 0; k < LAM_PRESSURES; ++k) stress->p[k] = 0.0;
@@ -121,10 +120,11 @@ static void ProlongStress(LamRVE coarse, const PetscReal (*fits)[2][4], LamRVE r
 
     LamGaussPoint(g, &xi, &eta, &weight);
     xi = Local(ratio * ((PetscReal)m + 0.5 * (1.0 + xi)), mesh->through, &m0);
-    eta = Local(LamMeshPlace(mesh, LamMeshShare(&rve->mesh, (PetscReal)i + 0.5 * (1.0 + eta))), mesh->along, &i0);
+    eta = Local(LamMeshPlace(mesh, face, LamMeshShare(&rve->mesh, face, (PetscReal)i + 0.5 * (1.0 + eta))), mesh->along,
+                &i0);
 
     const PetscReal base[4] = {1.0, xi, eta, xi * eta};
-    const PetscReal(*fit)[4] = fits[LamMeshElement(mesh, cell, face, i0, m0)];
+    const PetscReal(*fit)[4] = fits[LamMeshElement(mesh, face, i0, m0)];
 
     stress->s[g] = 0.0;
     for (PetscInt k = 0; k < 4; ++k) {
@@ -143,10 +143,9 @@ static PetscErrorCode ProlongStresses(LamRVE coarse, LamRVE rve)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(coarse->mesh.element_count, &fits));
   for (PetscInt e = 0; e < coarse->mesh.element_count; ++e) FitStresses(coarse, e, fits[e][0], fits[e][1]);
-  for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell)
-    for (PetscInt face = 0; face < LAM_FACES; ++face)
-      for (PetscInt i = 0; i < rve->mesh.along; ++i)
-        for (PetscInt m = 0; m < rve->mesh.through; ++m) ProlongStress(coarse, fits, rve, cell, face, i, m);
+  for (PetscInt face = 0; face < rve->mesh.tissue->faces; ++face)
+    for (PetscInt i = 0; i < rve->mesh.along; ++i)
+      for (PetscInt m = 0; m < rve->mesh.through; ++m) ProlongStress(coarse, fits, rve, face, i, m);
   PetscCall(PetscFree(fits));
   PetscFunctionReturn(0);
 }
@@ -211,9 +210,19 @@ static PetscErrorCode NameMesh(LamRVE rve, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+/* Elements along a face of the coarsest mesh: where air rounds corners there are two arcs, too. */
+static PetscInt LeastAlong(LamRVE rve)
+{
+  PetscInt arcs = 0;
+
+  for (PetscInt face = 0; face < rve->mesh.tissue->faces; ++face)
+    arcs += rve->mesh.flat[face][1] - rve->mesh.flat[face][0] < rve->mesh.along;
+  return arcs ? 4 : 1; /* halved: 3 and 1 */
+}
+
 PetscBool LamIsNested(LamRVE rve, const LamRVEState state)
 {
-  return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > 1 && !rve->seal.allowed &&
+  return (PetscBool)(rve->mesh.element_count >= LAM_LARGE && rve->micro.along > LeastAlong(rve) && !rve->seal.allowed &&
                      !rve->mesh.cuts && !state->solved);
 }
 

@@ -19,13 +19,11 @@ PetscReal LamNewtonTolerance(LamRVE rve)
   /* Pressure and fibre forces have a rounding error of eps times their stiffness in each of n entries. Gradients are
      differences of positions, so it grows with RVE size over element depth. The floor measured for t = 0.003 to 0.5 and
      up to 8 x 8 cells stays below 0.6 slenderness x size (docs/results/verification.md). */
-  const LamMicrostructure *micro = &rve->micro;
-  const PetscReal depth = rve->thinnest / (PetscReal)micro->through;
-  const PetscReal slenderness = PetscMax(LamLongestEdge(&rve->mesh) / depth, depth / LamShortestEdge(&rve->mesh));
-  const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
+  const PetscReal depth = rve->mesh.thinnest / (PetscReal)rve->mesh.through;
+  const PetscReal slenderness = PetscMax(rve->mesh.longest / depth, depth / rve->mesh.shortest);
   const PetscReal rounding = PETSC_MACHINE_EPSILON * rve->stiffest * PetscSqrtReal((PetscReal)rve->ndof);
 
-  return PetscMax(PetscMax(1e-11, rve->tolerance), PetscMax(4.0, slenderness * size) * rounding);
+  return PetscMax(PetscMax(1e-11, rve->tolerance), PetscMax(4.0, slenderness * rve->mesh.size) * rounding);
 }
 
 PetscErrorCode LamReportIteration(LamRVE rve, const char tier[], PetscInt iteration, PetscReal residual, PetscReal step,

@@ -58,18 +58,16 @@ PetscErrorCode LamRVESetMonitor(LamRVE rve, PetscBool on)
 static PetscErrorCode SetUpWalls(LamRVE rve)
 {
   PetscFunctionBeginUser;
-  rve->thinnest = 1.0;
   rve->stiffest = 0.0;
   for (PetscInt cell = 0; cell < rve->mesh.cell_count; ++cell) {
     const LamWall *wall = LamCellWall(&rve->micro, cell);
 
     PetscCall(LamWallLawGet(wall->law, &rve->law[cell]));
-    rve->thinnest = PetscMin(rve->thinnest, LamWallThickness(&rve->micro, cell));
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
   if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
     rve->stiffest = PetscMax(rve->stiffest, PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) *
-                                                LamLongestEdge(&rve->mesh));
+                                                rve->mesh.longest);
   PetscFunctionReturn(0);
 }
 
@@ -197,6 +195,19 @@ PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
 {
   PetscFunctionBeginUser;
   *unknowns = CountUnknowns(rve);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVECountUnknowns(const LamMicrostructure *micro, PetscInt *unknowns)
+{
+  LamMesh mesh;
+  PetscInt pairs = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMeshCreate(micro, &mesh));
+  for (PetscInt face = 0; face < mesh.tissue->faces; ++face) pairs += LamTissueIsSlave(mesh.tissue, face);
+  *unknowns = 2 * (mesh.class_count - 1) + (LamCellsPart(micro->interface) ? pairs * (2 * mesh.along + 1) : 0);
+  PetscCall(LamMeshDestroy(&mesh));
   PetscFunctionReturn(0);
 }
 

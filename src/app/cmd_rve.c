@@ -82,7 +82,7 @@ static PetscErrorCode SetCellDifference(json_t *object, const LamRVERun *run, co
   PetscReal difference;
 
   PetscFunctionBeginUser;
-  if (micro->is_patch || micro->cells[0] * micro->cells[1] == 1 || !LamResponseHasFields(response))
+  if (micro->tissue || micro->is_patch || micro->cells[0] * micro->cells[1] == 1 || !LamResponseHasFields(response))
     PetscFunctionReturn(0);
   PetscCall(LamRVEGetCellDifference(run->meshes.rve[0], run->meshes.state[0], &difference));
   json_object_set_new(object, "cell_difference", json_real(difference));

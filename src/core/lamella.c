@@ -1,7 +1,7 @@
 /*
   What follows from the parameters of a lamella: stiffnesses, and the length over which it breaks.
 */
-#include <lamella/lattice.h>
+#include <lamella/tissue.h>
 #include <lamella/scene.h>
 #include <math.h>
 
@@ -21,10 +21,12 @@ PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, P
   const LamCell *one, *other;
   PetscInt neighbour;
 
-  *strength = lamella->face_strength[face % (LAM_FACES / 2)];
-  *energy = lamella->face_energy[face % (LAM_FACES / 2)];
+  const PetscInt family = LamCellDirection(micro, cell, face) % (LAM_DIRECTIONS / 2);
+
+  *strength = lamella->face_strength[family];
+  *energy = lamella->face_energy[family];
   if (!micro->cell) return PETSC_TRUE;
-  neighbour = LamLatticeNeighbour(micro, cell, face, NULL, NULL);
+  neighbour = LamCellAcross(micro, cell, face);
   if (neighbour < 0) return PETSC_FALSE;
   one = &micro->cell[cell];
   other = &micro->cell[neighbour];
@@ -40,17 +42,18 @@ PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, P
 static PetscReal WorstFactors(const LamMicrostructure *micro)
 {
   const LamLamella *lamella = &micro->lamella;
-  const PetscInt cells = micro->cell ? micro->cells[0] * micro->cells[1] : 1;
+  const PetscInt cells = micro->cell || micro->tissue ? micro->cells[0] * micro->cells[1] : 1;
   PetscReal worst = 0.0;
 
-  for (PetscInt k = 0; k < cells * LAM_FACES / 2; k++) { /* each pair of cells once */
-    PetscReal strength, energy;
+  for (PetscInt cell = 0; cell < cells; cell++)
+    for (PetscInt k = 0; k < LamCellFaces(micro, cell); k++) {
+      PetscReal strength, energy;
 
-    if (!LamLamellaFaceFactors(micro, k / (LAM_FACES / 2), k % (LAM_FACES / 2), &strength, &energy)) continue;
-    worst = PetscMax(worst, Brittleness(strength, energy));
-    if (lamella->junction_length > 0.0)
-      worst = PetscMax(worst, Brittleness(strength * lamella->junction_strength, energy * lamella->junction_energy));
-  }
+      if (!LamLamellaFaceFactors(micro, cell, k, &strength, &energy)) continue;
+      worst = PetscMax(worst, Brittleness(strength, energy));
+      if (lamella->junction_length > 0.0)
+        worst = PetscMax(worst, Brittleness(strength * lamella->junction_strength, energy * lamella->junction_energy));
+    }
   return worst;
 }
 

@@ -101,6 +101,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
     micro.wall = micro.cell[cell].wall;
   }
   micro.cell = NULL;
+  micro.tissue = NULL;
   micro.cells[0] = micro.cells[1] = 1;
   micro.is_patch = PETSC_FALSE;
   micro.along = mesh.along;

@@ -12,56 +12,6 @@
 #define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
 
-/* Numbers of faces and corners of the outer loops whose nodes are separate unknowns, of pairs of facing walls, and of
-   the nodes that cuts of walls that tear add to outer loops. */
-typedef struct {
-  PetscInt faces, corners, pairs, cuts;
-} Outer;
-
-/* Counts a face of one cell, and the corner at its end, which also belongs to the next face. */
-static void CountFace(const LamMicrostructure *micro, PetscInt cell, PetscInt face, Outer *outer)
-{
-  const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
-  PetscBool held[2];
-  PetscInt other[2];
-
-  for (PetscInt k = 0; k < 2; k++) other[k] = LamLatticeNeighbour(micro, cell, (face + k) % LAM_FACES, NULL, &held[k]);
-  outer->pairs += other[0] > cell;
-  outer->cuts += !held[0] + !(held[0] && held[1]);
-  /* bonded cells share faces and corners: each is counted for its first cell */
-  if (!held[0] && !(bonded && other[0] >= 0 && other[0] < cell)) outer->faces++;
-  for (PetscInt k = 0; k < 2; k++)
-    if (held[k] || (bonded && other[k] >= 0 && other[k] < cell)) return;
-  outer->corners++;
-}
-
-static Outer CountOuter(const LamMicrostructure *micro)
-{
-  const PetscInt cells = micro->cells[0] * micro->cells[1];
-  /* of bonded cells in a period; a corner belongs to three */
-  Outer outer = {3 * cells, 2 * cells, 3 * cells, 2 * LAM_FACES * cells};
-
-  if (!micro->is_patch && LamCellsPart(micro->interface)) outer.faces = outer.corners = LAM_FACES * cells;
-  if (!micro->is_patch) return outer;
-  outer = (Outer){0};
-  for (PetscInt cell = 0; cell < cells; cell++)
-    for (PetscInt face = 0; face < LAM_FACES; face++) CountFace(micro, cell, face, &outer);
-  return outer;
-}
-
-/* Two for each free node: of a period one node is fixed, of a patch the outer walls that follow F. Cells in contact
-   have a multiplier for each end and midpoint of the elements along a face that has a partner. */
-static PetscInt CountUnknowns(const LamMicrostructure *micro)
-{
-  const PetscInt along = micro->along, cells = micro->cells[0] * micro->cells[1];
-  const Outer outer = CountOuter(micro);
-  const PetscInt cuts = LamWallsTear(micro) ? 2 * LAM_FACES * cells * 2 * micro->through + outer.cuts : 0;
-  const PetscInt nodes = cells * 12 * along * 2 * micro->through + outer.faces * (2 * along - 1) + outer.corners + cuts;
-  const PetscInt multipliers = LamCellsPart(micro->interface) ? outer.pairs * (2 * along + 1) : 0;
-
-  return 2 * (nodes - (micro->is_patch ? 0 : 1)) + multipliers;
-}
-
 /* An arbitrary order in which equal cells are adjacent; behind the last member is room that nobody sets. */
 static int CompareCells(const void *a, const void *b)
 {
@@ -131,7 +81,7 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
   *plan = (LamPlan){.load_states = scene->load_count};
   PetscCall(LamChooseMesh(&meshed, &plan->trial));
   plan->micro = meshed.micro;
-  plan->unknowns = CountUnknowns(&plan->micro);
+  PetscCall(LamRVECountUnknowns(&plan->micro, &plan->unknowns));
   if (scene->sealed) plan->unknowns += scene->micro.cells[0] * scene->micro.cells[1]; /* the pressures */
   PetscCall(MeasureSpread(&plan->micro, &plan->spread));
   if (scene->has_sample) plan->sample_states = scene->sample.count;

@@ -44,6 +44,7 @@ PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, LamCost *
   cell.cells[0] = cell.cells[1] = 1;
   cell.is_patch = PETSC_FALSE;
   cell.cell = NULL;
+  cell.tissue = NULL;
   PetscCall(LamRVETimeAssembly(&cell, &unknowns, &cost->assembly));
   cost->assembly *= cells;
   iteration = n <= LARGE_UNKNOWNS ? ITERATION_ASSEMBLIES : LARGE_ITERATION_ASSEMBLIES;

@@ -10,6 +10,8 @@
 #undef PetscLogReal
 #undef PetscSinReal
 #undef PetscCosReal
+#undef PetscTanReal
+#undef PetscAtan2Real
 #undef PetscFloorReal
 #undef PetscExpReal
 #undef PETSC_PI
@@ -21,6 +23,8 @@
 #define PetscLogReal EXTENDED_FUNCTION(log)
 #define PetscSinReal EXTENDED_FUNCTION(sin)
 #define PetscCosReal EXTENDED_FUNCTION(cos)
+#define PetscTanReal EXTENDED_FUNCTION(tan)
+#define PetscAtan2Real EXTENDED_FUNCTION(atan2)
 #define PetscFloorReal EXTENDED_FUNCTION(floor)
 #define PetscExpReal EXTENDED_FUNCTION(exp)
 #define cbrt EXTENDED_FUNCTION(cbrt)
@@ -36,6 +40,8 @@
 #define LamResponseFindBand(response) ((void)(response))
 
 #include "../../src/core/lattice.c"
+#include "../../src/core/tissue.c"
+#include "../../rve/cells/outline.c"
 #include "../../rve/cells/mesh.c"
 #include "../../rve/wall/element.c"
 #include "../../rve/wall/element_fields.c"

@@ -12,7 +12,6 @@ PetscErrorCode BareCreate(const LamMicrostructure *micro, LamRVE *out)
   PetscCall(LamMeshCreate(micro, &rve->mesh));
   PetscCall(PetscMalloc1(rve->mesh.cell_count, &rve->law));
   for (PetscInt c = 0; c < rve->mesh.cell_count; c++) PetscCall(LamWallLawGet(micro->wall.law, &rve->law[c]));
-  rve->thinnest = micro->wall_thickness;
   rve->stiffest = micro->wall.bulk_modulus + micro->wall.C4;
   PetscCall(LamGeometryCreate(rve));
   PetscCall(LamLinearCreate(&rve->mesh, NULL, 0, rve->linear));

@@ -33,8 +33,8 @@ TEST(neighbours_and_held_walls_are_those_of_the_mesh)
       for (PetscInt k = 0; k < LAM_FACES * mesh.cell_count; k++) {
         PetscBool held;
 
-        assert_int_equal(LamLatticeNeighbour(&micro, k / LAM_FACES, k % LAM_FACES, NULL, &held), mesh.neighbour[k]);
-        assert_int_equal(held, mesh.held[k]);
+        assert_int_equal(LamLatticeNeighbour(&micro, k / LAM_FACES, k % LAM_FACES, NULL, &held), LamMeshNeighbour(&mesh, k));
+        assert_int_equal(held, mesh.tissue->held[k]);
       }
     }
 }

@@ -146,8 +146,8 @@ TEST(GradedElementsAreSmallAtTheCorners)
   assert_near(40 * mesh.ends[1], 0.4, 0.01);
   assert_near(40 * (mesh.ends[21] - mesh.ends[20]), 1.6, 0.01);
   for (int i = 0; i <= 40; i++) assert_near(mesh.ends[i] + mesh.ends[40 - i], 1.0, 1e-15);
-  assert_near(LamShortestEdge(&mesh), 2 / sqrt(3.0) * mesh.ends[1], 1e-15);
-  assert_near(LamLongestEdge(&mesh), 2 / sqrt(3.0) * (mesh.ends[20] - mesh.ends[19]), 1e-15);
+  assert_near(mesh.shortest, 2 / sqrt(3.0) * mesh.ends[1], 1e-15);
+  assert_near(mesh.longest, 2 / sqrt(3.0) * (mesh.ends[20] - mesh.ends[19]), 1e-15);
 }
 
 TEST(PlacesAndSharesOfAFaceAreInverse)
@@ -158,8 +158,8 @@ TEST(PlacesAndSharesOfAFaceAreInverse)
   micro.grading = 0.7;
   mesh = NewMesh(&micro);
   for (int i = 0; i <= 24; i++) {
-    assert_near(LamMeshPlace(&mesh, LamMeshShare(&mesh, 0.25 * i)), 0.25 * i, 1e-14);
-    assert_near(LamMeshShare(&mesh, LamMeshPlace(&mesh, i / 24.0)), i / 24.0, 1e-15);
+    assert_near(LamMeshPlace(&mesh, 0, LamMeshShare(&mesh, 0, 0.25 * i)), 0.25 * i, 1e-14);
+    assert_near(LamMeshShare(&mesh, 0, LamMeshPlace(&mesh, 0, i / 24.0)), i / 24.0, 1e-15);
   }
 }
 

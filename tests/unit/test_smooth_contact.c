@@ -97,8 +97,8 @@ static void CloseLumen(Positions *at)
 {
   const LamWalls *walls = &at->rve->smooth->walls;
 
-  for (int i = 0; i < walls->nodes; i++)
-    at->y[2 * at->rve->mesh.node_class[walls->node[walls->nodes + i]]] *= 0.3 * WIDTH;
+  for (int i = 0; i < LamWallsNodes(walls, 0); i++)
+    at->y[2 * at->rve->mesh.node_class[walls->node[LamWallsNodes(walls, 0) + i]]] *= 0.3 * WIDTH;
 }
 
 /* Cells hardly change their shape; their period is sheared. */

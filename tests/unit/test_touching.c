@@ -26,10 +26,21 @@ static LamWalls *WallsOf(LamRVE rve)
   return &rve->smooth->walls;
 }
 
+/* Of each loop: all cells are hexagons. */
+static int SpansOf(const LamWalls *walls)
+{
+  return LamWallsSpans(walls, 0);
+}
+
+static int NodesOf(const LamWalls *walls)
+{
+  return LamWallsNodes(walls, 0);
+}
+
 /* Number of a point among those of all loops. */
 static int PointOf(const LamWalls *walls, const LamTouching *touch)
 {
-  return LAM_TOUCH_POINTS * (touch->loop * walls->spans + touch->span) + touch->point;
+  return LAM_TOUCH_POINTS * (touch->loop * SpansOf(walls) + touch->span) + touch->point;
 }
 
 /* The search with undeformed cells whose centres follow F. */
@@ -42,7 +53,7 @@ static void Search(LamRVE rve, const double F[9], LamTouchVisitor visitor, void 
     const int class = mesh->node_class[k];
     double centre[2];
 
-    LamMeshCentre(mesh, k / (mesh->ring_nodes * mesh->radial_nodes), centre);
+    LamTissueCentre(mesh->tissue, LamMeshCellOfNode(mesh, k), centre);
     state->y[2 * class] = mesh->class_X[2 * class] + (F[0] - 1.0) * centre[0] + F[1] * centre[1];
     state->y[2 * class + 1] = mesh->class_X[2 * class + 1] + F[3] * centre[0] + (F[4] - 1.0) * centre[1];
   }
@@ -66,8 +77,8 @@ static int AreNeighbours(const LamMesh *mesh, const LamTouching *touch)
 {
   double a[2], b[2];
 
-  LamMeshCentre(mesh, touch->loop / 2, a);
-  LamMeshCentre(mesh, touch->other / 2, b);
+  LamTissueCentre(mesh->tissue, touch->loop / 2, a);
+  LamTissueCentre(mesh->tissue, touch->other / 2, b);
   return fabs(hypot(b[0] + touch->shift[0] - a[0], b[1] + touch->shift[1] - a[1]) - 2.0) < 1e-6;
 }
 
@@ -93,7 +104,7 @@ static int SearchAtRest(void **state)
     size_t points;
 
     r->rve = NewRVE(&micro);
-    points = (size_t)(LAM_TOUCH_POINTS * WallsOf(r->rve)->loops * WallsOf(r->rve)->spans);
+    points = (size_t)(LAM_TOUCH_POINTS * WallsOf(r->rve)->loops * SpansOf(WallsOf(r->rve)));
     r->partners = calloc(points, sizeof(*r->partners));
     r->gap = calloc(points, sizeof(*r->gap));
     Search(r->rve, turned_identity, CountAtRest, r);
@@ -130,15 +141,13 @@ TEST(UndeformedLumensAreOpen)
 #define FOR_FLAT_POINTS(r, cell, face, at)                                                                             \
   for (int cell = 0; cell < r->rve->mesh.cell_count; cell++)                                                           \
     for (int face = 0; face < LAM_FACES; face++)                                                                       \
-      for (int at = LAM_TOUCH_POINTS * (2 * cell * WallsOf(r->rve)->spans + (PER_FACE + 1) * face),                    \
+      for (int at = LAM_TOUCH_POINTS * (2 * cell * SpansOf(WallsOf(r->rve)) + (PER_FACE + 1) * face),                    \
                end_##at = at + LAM_TOUCH_POINTS * PER_FACE;                                                            \
            at < end_##at; at++)
 
 static int HasNeighbour(const Rest *r, int cell, int face)
 {
-  const PetscReal *image;
-
-  return LamMeshNeighbour(&r->rve->mesh, cell, face, &image) >= 0;
+  return LamMeshNeighbour(&r->rve->mesh, LAM_FACES * cell + face) >= 0;
 }
 
 TEST(EachPointOfAFaceHasOnePartner)
@@ -242,7 +251,7 @@ static size_t PairOf(const Pairs *p, int i, int j, int span, int point, int othe
 {
   const size_t image = (size_t)((i + PERIODS) * IMAGES + j + PERIODS);
 
-  return (image * LAM_TOUCH_POINTS * p->walls->spans + LAM_TOUCH_POINTS * span + point) * p->walls->spans + other;
+  return (image * LAM_TOUCH_POINTS * SpansOf(p->walls) + LAM_TOUCH_POINTS * span + point) * SpansOf(p->walls) + other;
 }
 
 static void MarkFound(void *ctx, const LamTouching *touch)
@@ -265,7 +274,7 @@ static void MarkFound(void *ctx, const LamTouching *touch)
 /* Control points of a span of the outer walls of one cell. */
 static void SpanOf(const LamWalls *walls, int span, double c[LAM_SPAN][2])
 {
-  for (int a = 0; a < LAM_SPAN; a++) memcpy(c[a], walls->x[(span + a - 1 + walls->spans) % walls->spans], sizeof(c[a]));
+  for (int a = 0; a < LAM_SPAN; a++) memcpy(c[a], walls->x[(span + a - 1 + SpansOf(walls)) % SpansOf(walls)], sizeof(c[a]));
 }
 
 /* (X - y).tau at t. */
@@ -302,7 +311,7 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
 {
   const LamWalls *walls = p->walls;
   const double(*L)[2] = walls->mesh->period, S[2] = {i * L[0][0] + j * L[1][0], i * L[0][1] + j * L[1][1]};
-  const int n = walls->spans, itself = i == 0 && j == 0;
+  const int n = SpansOf(walls), itself = i == 0 && j == 0;
   double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], tau[2];
 
   SpanOf(walls, span, own);
@@ -320,7 +329,7 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
 
 static void PairsEnter(Pairs *p, LamRVE rve)
 {
-  const size_t n = (size_t)WallsOf(rve)->spans;
+  const size_t n = (size_t)SpansOf(WallsOf(rve));
 
   *p = (Pairs){.walls = WallsOf(rve), .found = calloc(IMAGES * IMAGES * LAM_TOUCH_POINTS * n * n, 1)};
   Search(rve, sheared, MarkFound, p);
@@ -328,7 +337,7 @@ static void PairsEnter(Pairs *p, LamRVE rve)
 
 TEST_ON(AllImagesOfAShearedPeriodAreFound, Pairs, p, PairsEnter(p, rest[ONE].rve), free(p->found))
 {
-  const int n = p->walls->spans;
+  const int n = SpansOf(p->walls);
 
   assert_int_equal(p->outside, 0);
   for (int i = -PERIODS; i <= PERIODS; i++)
@@ -447,7 +456,7 @@ static void CountSlit(void *ctx, const LamTouching *touch)
   const int between = abs(touch->span - touch->at);
 
   if (touch->loop != s->loop || touch->other != s->loop || hypot(touch->shift[0], touch->shift[1]) > 0.0) return;
-  s->nearest = PetscMin(s->nearest, PetscMin(between, WallsOf(s->rve)->spans - between));
+  s->nearest = PetscMin(s->nearest, PetscMin(between, SpansOf(WallsOf(s->rve)) - between));
   if (!IsAcross(s, touch->span)) return;
   s->partners[LAM_TOUCH_POINTS * touch->span + touch->point]++;
   s->least = fmin(s->least, touch->gap.gap);
@@ -462,10 +471,10 @@ static void SlitEnter(Slit *s, int loop, double distance)
   const LamWalls *walls = WallsOf(rve);
   OWNED(LamRVEState, LamRVEStateDestroy) state = NewState(rve);
 
-  *s = (Slit){.rve = rve, .loop = loop, .least = 1.0, .most = -1.0, .nearest = walls->spans};
-  s->partners = calloc((size_t)(LAM_TOUCH_POINTS * walls->spans), sizeof(*s->partners));
-  for (int i = 0; i < walls->nodes; i++)
-    state->y[2 * rve->mesh.node_class[walls->node[loop * walls->nodes + i]]] *=
+  *s = (Slit){.rve = rve, .loop = loop, .least = 1.0, .most = -1.0, .nearest = SpansOf(walls)};
+  s->partners = calloc((size_t)(LAM_TOUCH_POINTS * SpansOf(walls)), sizeof(*s->partners));
+  for (int i = 0; i < NodesOf(walls); i++)
+    state->y[2 * rve->mesh.node_class[walls->node[loop * NodesOf(walls) + i]]] *=
         0.5 * distance / (loop == LUMEN ? 1.0 - walls->thickness[0] : 1.0);
   LamWallsPlace(WallsOf(rve), turned_identity, state->y);
   LamWallsVisit(walls, WIDTH, CountSlit, s);
@@ -475,7 +484,7 @@ static void AssertPartners(const Slit *s, int partners)
 {
   int spans = 0;
 
-  for (int span = 0; span < WallsOf(s->rve)->spans; span++) {
+  for (int span = 0; span < SpansOf(WallsOf(s->rve)); span++) {
     if (!IsAcross(s, span)) continue;
     spans++;
     for (int q = 0; q < LAM_TOUCH_POINTS; q++) assert_int_equal(s->partners[LAM_TOUCH_POINTS * span + q], partners);

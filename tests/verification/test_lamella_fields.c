@@ -187,7 +187,7 @@ TEST(BrokenIsTheShareOfTheEnergyThatIsSpent)
 
   for (PetscInt face = 0; face < torn.faces; face++)
     for (PetscInt edge = 0; edge < torn.rve->mesh.along; edge++) {
-      const PetscReal strength = law.strength * law.face_strength[torn.rve->contact->faces[face].face];
+      const PetscReal strength = law.strength * law.face_strength[torn.rve->contact->faces[face].family];
       PetscInt point;
       const PetscInt k = Middle(&torn, face, edge, &point);
       const LamBondHistory *history = &torn.state->history[point];
@@ -228,7 +228,7 @@ TEST(NoTractionIsAboveTheStrength)
   PetscReal largest = 0.0;
 
   for (PetscInt k = 0; k < torn.faces * torn.points; k++) {
-    const PetscReal strength = law.strength * law.face_strength[torn.rve->contact->faces[k / torn.points].face];
+    const PetscReal strength = law.strength * law.face_strength[torn.rve->contact->faces[k / torn.points].family];
     const PetscReal T = hypot(PetscMax(0.0, torn.at.normal_traction[k]), torn.at.shear_traction[k] / BETA);
 
     assert_true(T <= strength * (1.0 + 1e-12));

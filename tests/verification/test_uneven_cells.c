@@ -112,8 +112,7 @@ static void FindGaps(LamRVE rve, LamRVEState state, PetscInt cell, double larges
   assert_int_equal(LamRVEGetInterface(rve, state, NULL, NULL, gap, NULL), 0);
   largest[0] = largest[1] = 0.0;
   for (PetscInt k = 0; k < faces * points; k++) {
-    const PetscReal *image;
-    const PetscInt owner = k / points / 3, other = LamMeshNeighbour(&rve->mesh, owner, k / points % 3, &image);
+    const PetscInt owner = k / points / 3, other = LamMeshNeighbour(&rve->mesh, 6 * owner + k / points % 3);
     double *of = &largest[owner != cell && other != cell];
 
     *of = fmax(*of, gap[k]); /* NaN, where a face meets no other, is passed over */
