@@ -2,12 +2,13 @@
   The canonical description of a microstructure: nondimensional, with 12 digits, without parameters that have no
   effect. Scenes in different units that describe the same tissue have the same text and the same hash.
 */
-#include <lamella/scene.h>
+#include <lamella/tissue.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "tissue_json.h"
 
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
 const char *const LamSofteningNames[] = {LAM_SOFTENINGS(LAM_NAME_ENTRY)};
@@ -102,6 +103,11 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   if (micro->is_patch && micro->notch_columns)
     fprintf(out, ", \"notch\": [%d, %d]", (int)micro->notch_row, (int)micro->notch_columns);
   if (micro->is_patch) fprintf(out, "}, ");
+  if (micro->tissue) {
+    fprintf(out, "\"tissue\": ");
+    LamTissueDescribe(micro->tissue, out);
+    fprintf(out, ", ");
+  }
   fprintf(out, "\"mesh\": {\"along\": %d, \"through\": %d", (int)micro->along, (int)micro->through);
   if (micro->grading != 0) fprintf(out, ", \"grading\": %.12g", Clean(micro->grading));
   fprintf(out, "}, ");
@@ -176,6 +182,7 @@ PetscErrorCode LamMicrostructureCopy(const LamMicrostructure *micro, LamMicrostr
   PetscFunctionBeginUser;
   *copy = *micro;
   copy->cell = NULL;
+  PetscCall(LamTissueCopy(micro->tissue, &copy->tissue));
   if (!micro->cell) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(count, &copy->cell));
   PetscCall(PetscArraycpy(copy->cell, micro->cell, count));
@@ -186,6 +193,7 @@ PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(micro->cell));
+  PetscCall(LamTissueDestroy(&micro->tissue));
   PetscFunctionReturn(0);
 }
 
@@ -295,17 +303,20 @@ static PetscBool ParseInterface(json_t *object, LamMicrostructure *m)
 
 static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
 {
-  json_t *wall, *interface, *patch = NULL, *cells_that_differ = NULL;
+  json_t *wall, *interface, *patch = NULL, *tissue = NULL, *cells_that_differ = NULL;
   int cells[2], along, through;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?{s:F, s:F, s:F}}", "wall_thickness",
-                  &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1], "patch", &patch,
-                  "mesh", "along", &along, "through", &through, "grading", &m->grading, "wall", &wall, "interface",
-                  &interface, "cell", &cells_that_differ, "tearing", "strength", &m->tearing.strength,
-                  "fracture_energy", &m->tearing.energy, "stiffness", &m->tearing.stiffness))
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?{s:F, s:F, s:F}}",
+                  "wall_thickness", &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1],
+                  "patch", &patch, "tissue", &tissue, "mesh", "along", &along, "through", &through, "grading",
+                  &m->grading, "wall", &wall, "interface", &interface, "cell", &cells_that_differ, "tearing",
+                  "strength", &m->tearing.strength, "fracture_energy", &m->tearing.energy, "stiffness",
+                  &m->tearing.stiffness))
     return PETSC_FALSE;
   if (cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
   for (int i = 0; i < 2; i++) m->cells[i] = cells[i];
+  if (tissue && (!LamTissueParse(tissue, &m->tissue) || m->tissue->cells != cells[0] || cells[1] != 1))
+    return PETSC_FALSE;
   m->along = along;
   m->through = through;
   return (PetscBool)(ParseWall(wall, &m->wall) && ParseInterface(interface, m) && (!patch || ParsePatch(patch, m)) &&

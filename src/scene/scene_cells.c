@@ -1,7 +1,7 @@
 /*
   Variation between cells, and checks of a patch of cells between grips.
 */
-#include <lamella/lattice.h>
+#include <lamella/tissue.h>
 #include "scene_rows.h"
 #include <math.h>
 #include <string.h>
@@ -158,6 +158,8 @@ static PetscErrorCode AssignPattern(Variation *v, const LamNode *pattern, const 
   const PetscInt rows = pattern->count, columns = pattern->first->count;
 
   PetscFunctionBeginUser;
+  LamSceneCheckName(!LamNodeFind(pattern->document->root, "rve.tissue"), pattern,
+                    "the cells of a tissue file are in no rows; write a list, or classes in the file");
   for (const LamNode *row = pattern->first; row; row = row->next) {
     PetscInt j = 0;
 
@@ -196,8 +198,21 @@ static PetscErrorCode AssignRandom(Variation *v, const LamNode *random, const Pe
   PetscFunctionReturn(0);
 }
 
-/* Exactly one of list, pattern and random is given. */
-static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
+/* The classes of a tissue file. */
+static PetscErrorCode AssignClasses(Variation *v, const PetscInt class[], PetscInt cells)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < cells; c++) {
+    LamSceneCheckName(class[c] <= v->kind_count, LamNodeFind(v->block, "kinds"),
+                      "has %d kinds, and the file of the tissue has a cell of class %d; write that kind, too",
+                      (int)v->kind_count, (int)class[c]);
+    v->kind_of[c] = class[c];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Exactly one of list, pattern and random is given, or the classes of a tissue file. */
+static PetscErrorCode AssignKinds(Variation *v, const PetscInt class[], const PetscInt cells[2])
 {
   static const struct {
     const char *name;
@@ -212,15 +227,21 @@ static PetscErrorCode AssignKinds(Variation *v, const PetscInt cells[2])
 
     if (!node) continue;
     LamSceneCheckName(!found, node, "given together with %s; a variation has one of them", found->name);
+    LamSceneCheckName(!class, node, "the file of the tissue says of which class each cell is; leave it out");
     found = node;
     method = m;
+  }
+  if (class) {
+    PetscCall(AssignClasses(v, class, cells[0] * cells[1]));
+    PetscFunctionReturn(0);
   }
   LamSceneRequire(found, v->block, "list", "missing; write which cell is of which kind as a list, a pattern or random");
   PetscCall(methods[method].assign(v, found, cells));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BuildKinds(const LamNode *block, const LamNode *kinds, LamScene *scene)
+static PetscErrorCode BuildKinds(const LamNode *block, const LamNode *kinds, const LamSceneTissue *tissue,
+                                 LamScene *scene)
 {
   LamMicrostructure *micro = &scene->micro;
   Variation v = {.block = block, .kind_count = kinds->count};
@@ -228,11 +249,13 @@ static PetscErrorCode BuildKinds(const LamNode *block, const LamNode *kinds, Lam
   PetscInt k = 0; /* the kind of `cell` */
 
   PetscFunctionBeginUser;
-  PetscCall(AssignKinds(&v, micro->cells));
+  PetscCall(AssignKinds(&v, tissue->class, micro->cells));
   for (const LamNode *kind = kinds->first;; kind = kind->next, k++) {
     for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++)
       if (v.kind_of[c] == k) micro->cell[c] = cell;
     if (!kind) break;
+    LamSceneCheckName(!tissue->thickness || !LamNodeFind(kind, "wall_thickness"), LamNodeFind(kind, "wall_thickness"),
+                      "the file of the tissue has the thickness of walls; leave it out");
     PetscCall(ReadKind(kind, scene, &cell));
   }
   PetscFunctionReturn(0);
@@ -324,13 +347,40 @@ static PetscErrorCode DropVariation(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene)
+/* The thickness of walls of a tissue file, times what a field makes of the mean. */
+static PetscErrorCode SetThickness(const LamNode *node, const PetscReal thickness[], LamScene *scene)
+{
+  LamMicrostructure *micro = &scene->micro;
+  const PetscInt cells = micro->cells[0] * micro->cells[1];
+
+  PetscFunctionBeginUser;
+  if (!micro->cell) {
+    PetscCall(PetscMalloc1(cells, &micro->cell));
+    for (PetscInt c = 0; c < cells; c++) micro->cell[c] = OwnCell(micro);
+  }
+  for (PetscInt c = 0; c < cells; c++) {
+    const PetscReal factor = micro->cell[c].wall_thickness / micro->wall_thickness;
+
+    micro->cell[c].wall_thickness = factor * thickness[c] / scene->scales.length;
+    LamSceneCheck(micro->cell[c].wall_thickness < 1.0, node, "the walls of cell %d, %.3g um, fill it", (int)c,
+                  (double)(1e6 * factor * thickness[c]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildCells(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene)
 {
   const LamNode *block = LamNodeFind(root, "rve.variation");
   const LamNode *kinds = LamNodeFind(block, "kinds"), *field = LamNodeFind(block, "field");
   LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
+  for (PetscInt c = 0; !kinds && tissue->class && c < micro->cells[0]; c++)
+    LamSceneCheck(tissue->class[c] == 0, LamNodeFind(root, "rve.tissue"),
+                  "cell %d is of class %d; write rve.variation.kinds, which says what its cells have", (int)c,
+                  (int)tissue->class[c]);
+  if (!block && tissue->thickness) PetscCall(SetThickness(LamNodeFind(root, "rve.tissue"), tissue->thickness, scene));
+  if (!block && micro->cell) PetscCall(DropVariation(micro));
   if (!block) PetscFunctionReturn(0);
   LamSceneCheckName(!field || block->count == 1, field,
                     "given together with %s; a variation has a field alone, or kinds and one of list, pattern and "
@@ -342,7 +392,8 @@ PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene)
   if (field)
     PetscCall(BuildField(field, scene));
   else
-    PetscCall(BuildKinds(block, kinds, scene));
+    PetscCall(BuildKinds(block, kinds, tissue, scene));
+  if (tissue->thickness) PetscCall(SetThickness(LamNodeFind(root, "rve.tissue"), tissue->thickness, scene));
   PetscCall(DropVariation(micro));
   PetscFunctionReturn(0);
 }
@@ -369,8 +420,8 @@ static PetscErrorCode CheckHold(const LamNode *root, const LamNode *node, PetscR
 /* True if the cohesion of a neighbour holds a cell: between two cells the smaller cohesion acts. */
 static PetscBool IsHeldByNeighbour(const LamMicrostructure *micro, PetscInt cell)
 {
-  for (PetscInt face = 0; face < LAM_FACES; face++) {
-    const PetscInt other = LamLatticeNeighbour(micro, cell, face, NULL, NULL);
+  for (PetscInt face = 0; face < LamCellFaces(micro, cell); face++) {
+    const PetscInt other = LamCellAcross(micro, cell, face);
 
     if (other >= 0 && PetscMin(micro->cell[cell].cohesion, micro->cell[other].cohesion) > 0.0) return PETSC_TRUE;
   }

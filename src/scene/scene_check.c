@@ -268,6 +268,17 @@ static PetscErrorCode ReadMap(LamNode *node, const LamKey *key)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamSceneNeed(const LamNode *map, const char path[])
+{
+  const LamKey *key = LamKeyFind(path);
+  char expected[LAM_KEY_TEXT_LENGTH];
+
+  PetscFunctionBeginUser;
+  LamKeyExpectation(key, PETSC_FALSE, expected);
+  LamSceneRequire(LamNodeFind(map, LamKeyName(key)), map, LamKeyName(key), "missing; write %s", expected);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamSceneReadNode(LamNode *node, const LamKey *key)
 {
   PetscFunctionBeginUser;

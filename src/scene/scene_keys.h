@@ -106,6 +106,9 @@ PetscErrorCode LamSceneReadNode(LamNode *node, const LamKey *key);
 #define LamSceneFill(base, scales, type, target) LamSceneFillRecord(base, scales, #type, 1 ? (target) : (type *)NULL)
 PetscErrorCode LamSceneFillRecord(const LamNode *base, const LamScales *scales, const char record[], void *target);
 
+/* Rejects a map without the key `path`, as if that were always required. */
+PetscErrorCode LamSceneNeed(const LamNode *map, const char path[]);
+
 #define LAM_NOT_LAMELLA "says nothing with law: %s; write law: lamella, or leave it out" /* LamInterfaceLawNames */
 #define LAM_BONDED_PARTS "contradicts law: bonded, whose cells never part; leave it out"
 
@@ -135,9 +138,19 @@ PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 PetscErrorCode LamSceneDoubtProcess(const LamNode *block, LamScene *scene, PetscReal cycle);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
 
-/* scene_cells.c, part of the RVE: variation between cells. */
+/* scene_tissue.c, part of the RVE: cells of a file (`rve.tissue`), with their number and the scale of lengths, before
+   anything is nondimensional; then the thicknesses of their walls. Only with the key. */
+typedef struct {
+  PetscReal *thickness; /* [cell] m; NULL: the scene gives it; owned */
+  PetscInt *class;      /* [cell] kind of variation; NULL: the file gives none; owned */
+} LamSceneTissue;
+PetscErrorCode LamSceneReadTissue(const LamNode *root, LamScene *scene, LamSceneTissue *tissue);
+PetscErrorCode LamSceneBuildTissue(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene);
+PetscErrorCode LamSceneDestroyTissue(LamSceneTissue *tissue);
+
+/* scene_cells.c, part of the RVE: variation between cells, and those of a tissue file. */
 #define LAM_MAX_CELLS 64 /* in one direction */
-PetscErrorCode LamSceneBuildCells(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildCells(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene);
 /* True if only cohesion holds some cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* Checks the rest of a complete scene for compatibility with a patch. */

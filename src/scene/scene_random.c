@@ -6,6 +6,7 @@
 */
 #include "scene_keys.h"
 #include <lamella/lattice.h>
+#include <lamella/tissue.h>
 #include <math.h>
 #include <stdint.h>
 
@@ -52,6 +53,32 @@ static PetscReal Weight(PetscInt d0, PetscInt d1, PetscReal correlation)
   return r <= REACH ? exp(-2.0 * r * r) : 0.0;
 }
 
+/* Weights as below of cells that are polygons: distances of the means of their corners over two apothems. */
+static void WeighPolygons(const LamMicrostructure *micro, PetscInt cell, PetscReal correlation, PetscReal weight[])
+{
+  const LamTissue t = micro->tissue;
+  const PetscReal reach = 2.0 * REACH * correlation,
+                  det = t->period[0][0] * t->period[1][1] - t->period[0][1] * t->period[1][0];
+  PetscInt images[2] = {0, 0};
+  PetscReal here[2], there[2];
+
+  for (int k = 0; k < 2 && !micro->is_patch; k++) /* periods within reach, beside those between the centres */
+    images[k] = 2 + (PetscInt)(reach * hypot(t->period[1 - k][0], t->period[1 - k][1]) / det);
+  LamTissueCentre(t, cell, here);
+  for (PetscInt c = 0; c < t->cells; c++) {
+    weight[c] = 0.0;
+    LamTissueCentre(t, c, there);
+    for (PetscInt i = -images[0]; i <= images[0]; i++)
+      for (PetscInt j = -images[1]; j <= images[1]; j++) {
+        const PetscReal x = there[0] - here[0] + (PetscReal)i * t->period[0][0] + (PetscReal)j * t->period[1][0];
+        const PetscReal y = there[1] - here[1] + (PetscReal)i * t->period[0][1] + (PetscReal)j * t->period[1][1];
+        const PetscReal r = 0.5 * hypot(x, y) / correlation;
+
+        if (r <= REACH) weight[c] += exp(-2.0 * r * r);
+      }
+  }
+}
+
 /* Weights of the noise of each cell, in a period including all its images, for one cell. */
 static void WeighNoise(const LamMicrostructure *micro, PetscInt cell, PetscReal correlation, PetscReal weight[])
 {
@@ -81,7 +108,7 @@ static void Smooth(const LamMicrostructure *micro, PetscReal correlation, PetscI
   for (PetscInt cell = 0; cell < count; cell++) {
     PetscReal square = 0.0;
 
-    WeighNoise(micro, cell, correlation, weight);
+    (micro->tissue ? WeighPolygons : WeighNoise)(micro, cell, correlation, weight);
     for (PetscInt c = 0; c < count; c++) square += weight[c] * weight[c];
     for (PetscInt p = 0; p < properties; p++) {
       PetscReal sum = 0.0;

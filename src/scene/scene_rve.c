@@ -6,14 +6,22 @@
 
 static const char *const turgor_mode_names[] = {LAM_TURGOR_MODES(LAM_NAME_ENTRY)};
 
+#define WITHOUT_TISSUE "none: required without `rve.tissue`"
+
 static const LamKey cell_keys[] = {
     {MAP("rve"), REQUIRED, .example = "{cell: {...}, wall: {...}}",
-     .help = "The representative volume element: whole hexagonal cells that repeat periodically, or a patch of them."},
-    {MAP("rve.cell"), REQUIRED, .example = "{apothem: 75 um, wall_thickness: 11.25 um}", .help = "One cell."},
-    {LENGTH("rve.cell.apothem", "um"), REQUIRED, ABOVE(0), .example = "75 um",
+     .help = "The representative volume element: whole cells that repeat periodically, hexagons or those of a file, or "
+             "a patch of them."},
+    {PATH("rve.tissue"), INTO(LamScene, tissue), .default_words = "none: hexagons", .example = "apple.json",
+     .help = "File of cells of any shape (docs/reference/tissue.md), written by `lamella tissue`, `python3 -m "
+             "lamella.cells` or by hand: instead of `rve.cells`, `rve.cell.apothem` and, where the file has it, "
+             "`rve.cell.wall_thickness`. The apothem a, the unit of lengths, is that of a hexagon with the mean area of "
+             "its cells."},
+    {MAP("rve.cell"), .default_words = WITHOUT_TISSUE, .example = "{apothem: 75 um, wall_thickness: 11.25 um}", .help = "One cell."},
+    {LENGTH("rve.cell.apothem", "um"), ABOVE(0), .default_words = WITHOUT_TISSUE, .example = "75 um",
      .help = "Distance a from the centre of the hexagon to the middle lamella."},
-    {LENGTH("rve.cell.wall_thickness", "um"), INTO(LamScene, micro.wall_thickness), REQUIRED, ABOVE(0),
-     .example = "11.25 um", .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
+    {LENGTH("rve.cell.wall_thickness", "um"), INTO(LamScene, micro.wall_thickness), ABOVE(0),
+     .default_words = WITHOUT_TISSUE, .example = "11.25 um", .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
     {ANGLE("rve.cell.orientation"), INTO(LamScene, micro.orientation), FROM(-360), TO(360), .default_value = "0 deg",
      .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis; the other normals follow at 60 deg."},
     {INTEGER("rve.cells"), INTO(LamScene, micro.cells), .size = 2, FROM(1), TO(LAM_MAX_CELLS),
@@ -21,9 +29,11 @@ static const LamKey cell_keys[] = {
     {MAP("rve.patch"), .example = "{columns: 6, rows: 6, sides: affine}",
      .help = "A block of cells between grips instead of `rve.cells`: the outer walls of its bottom and top rows "
              "follow F. It is a body, no material point: solved by `rve` and `map`, without `sample` and `macro`."},
-    {INTEGER("rve.patch.columns"), INTO(LamScene, micro.cells[0]), REQUIRED, FROM(1), TO(LAM_MAX_CELLS), .example = "6",
+    {INTEGER("rve.patch.columns"), INTO(LamScene, micro.cells[0]), FROM(1), TO(LAM_MAX_CELLS),
+     .default_words = WITHOUT_TISSUE, .example = "6",
      .help = "Cells in a row, along X1."},
-    {INTEGER("rve.patch.rows"), INTO(LamScene, micro.cells[1]), REQUIRED, FROM(1), TO(LAM_MAX_CELLS), .example = "6",
+    {INTEGER("rve.patch.rows"), INTO(LamScene, micro.cells[1]), FROM(1), TO(LAM_MAX_CELLS),
+     .default_words = WITHOUT_TISSUE, .example = "6",
      .help = "Rows of cells, along X2."},
     {NAME_OF("rve.patch.sides", LamPatchSidesNames, LAM_PATCH_SIDES_COUNT), INTO(LamScene, micro.sides),
      .default_value = "affine",
@@ -113,32 +123,64 @@ static PetscErrorCode CheckNotch(const LamNode *notch, const LamMicrostructure *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
+/* Hexagons: the scale of lengths, which a tissue file gives otherwise. */
+static PetscErrorCode ReadHexagon(const LamNode *rve, LamScales *scales)
+{
+  const LamNode *apothem, *thickness, *patch = LamNodeFind(rve, "patch");
+
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneNeed(rve, "rve.cell"));
+  PetscCall(LamSceneNeed(LamNodeFind(rve, "cell"), "rve.cell.apothem"));
+  PetscCall(LamSceneNeed(LamNodeFind(rve, "cell"), "rve.cell.wall_thickness"));
+  if (patch) PetscCall(LamSceneNeed(patch, "rve.patch.columns"));
+  if (patch) PetscCall(LamSceneNeed(patch, "rve.patch.rows"));
+  apothem = LamNodeFind(rve, "cell.apothem");
+  thickness = LamNodeFind(rve, "cell.wall_thickness");
+  scales->length = apothem->value.number[0];
+  PetscCall(LamSceneCheckScale(apothem, scales->length));
+  LamSceneCheck(thickness->value.number[0] < scales->length, thickness,
+                "the wall fills the cell; write a thickness less than the apothem (%s)", apothem->text);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildRVE(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene)
 {
   const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
   const LamNode *patch = LamNodeFind(rve, "patch");
-  const LamNode *apothem = LamNodeFind(rve, "cell.apothem"), *thickness = LamNodeFind(rve, "cell.wall_thickness");
   const LamNode *C1 = LamNodeFind(rve, "wall.C1"), *C2 = LamNodeFind(rve, "wall.C2");
   LamMicrostructure *micro = &scene->micro;
   LamScales *scales = &scene->scales;
 
   PetscFunctionBeginUser;
-  scales->length = apothem->value.number[0];
-  PetscCall(LamSceneCheckScale(apothem, scales->length));
   scales->stress = C1->value.number[0] + C2->value.number[0];
   PetscCall(LamSceneCheckScale(C1, scales->stress));
-  LamSceneCheck(thickness->value.number[0] < scales->length, thickness,
-                "the wall fills the cell; write a thickness less than the apothem (%s)", apothem->text);
   PetscCall(LamSceneReadWall(LamNodeFind(root, "rve.wall"), scales, NULL, &micro->wall));
   micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
   PetscCall(LamSceneFill(root, scales, LamScene, scene));
   LamSceneCheckName(!patch || !cells, cells,
                     "given together with patch in line %d; a block of cells is periodic or between grips",
                     patch->name_line);
-  micro->is_patch = (PetscBool)(patch != NULL);
+  if (!scene->tissue[0]) micro->is_patch = (PetscBool)(patch != NULL);
   PetscCall(CheckNotch(LamNodeFind(rve, "patch.notch"), micro));
   PetscCall(BuildTurgor(root, scene));
-  PetscCall(LamSceneBuildCells(root, scene));
+  PetscCall(LamSceneBuildTissue(root, tissue, scene));
+  PetscCall(LamSceneBuildCells(root, tissue, scene));
   PetscCall(LamSceneBuildInterface(root, scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene)
+{
+  LamSceneTissue tissue = {0};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  if (LamNodeFind(root, "rve.tissue"))
+    ierr = LamSceneReadTissue(root, scene, &tissue);
+  else
+    ierr = ReadHexagon(LamNodeFind(root, "rve"), &scene->scales);
+  if (!ierr) ierr = BuildRVE(root, &tissue, scene);
+  PetscCall(LamSceneDestroyTissue(&tissue));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
