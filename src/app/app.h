@@ -56,6 +56,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandTear(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandCompletion(LamArgs *args, int *exit_status);
@@ -191,10 +192,16 @@ PetscErrorCode LamTestPrint(const LamTest *test, const LamTestOptions *options, 
 void LamPlotVisitFields(void (*visit)(void *ctx, const char name[]), void *ctx);
 
 /* ---- python.c ---- */
-/* Has the package in python/ draw what the request asks for: {"input": FILE, "outputs": [FIG, ...], ...}, as
-   python/lamella/plot/__main__.py takes it. Takes ownership of the request. *exit_status is that of the drawing, which
-   has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
-PetscErrorCode LamPythonDraw(json_t *request, int *exit_status);
+/* A part of the package in python/. */
+typedef struct {
+  const char *module;  /* "lamella.plot.__main__", whose function main takes the request */
+  const char *need;    /* "pictures need": how messages about what is missing begin */
+  const char *package; /* of Python, besides NumPy */
+} LamPython;
+extern const LamPython LamPythonPlot, LamPythonTissue;
+/* Has it do what the request asks for, a JSON object. Takes ownership of the request. *exit_status is that of the
+   Python process, which has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
+PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status);
 
 /* ---- fe2_report.c ---- */
 /* Human-readable summary of an FE2 run, from the JSON object that its file holds. */

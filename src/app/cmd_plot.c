@@ -119,7 +119,7 @@ static PetscErrorCode Draw(const char input[], const Request *r, int *exit_statu
   if (r->dpi > 0) json_object_set_new(o, "dpi", json_integer(r->dpi));
   if (AddPair(o, "size", r->size, "x", exit_status) && AddPair(o, "range", r->range, ",", exit_status) &&
       AddPair(o, "x", r->x, ",", exit_status) && AddPair(o, "y", r->y, ",", exit_status))
-    PetscCall(LamPythonDraw(o, exit_status));
+    PetscCall(LamPythonRun(&LamPythonPlot, o, exit_status));
   else
     json_decref(o);
   PetscFunctionReturn(0);

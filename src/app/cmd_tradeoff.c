@@ -311,7 +311,7 @@ static PetscErrorCode DrawFiles(const char directory[], int *exit_status)
   PetscCall(PetscSNPrintf(png, sizeof(png), "%s/tradeoff.png", directory));
   PetscCall(PetscSNPrintf(svg, sizeof(svg), "%s/tradeoff.svg", directory));
   PetscCall(
-      LamPythonDraw(json_pack("{s:s, s:[s,s], s:b}", "input", json, "outputs", png, svg, "silent", 1), exit_status));
+      LamPythonRun(&LamPythonPlot, json_pack("{s:s, s:[s,s], s:b}", "input", json, "outputs", png, svg, "silent", 1), exit_status));
   if (*exit_status) fprintf(stderr, "lamella tradeoff: %s has the numbers; lamella plot draws it again\n", json);
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,5 @@
 /*
-  Pictures are drawn by the Python package (python/lamella/plot), in a process of its own.
+  Pictures are drawn, and tissue is made, by the Python package (python/lamella), in a process of its own.
 */
 #define _GNU_SOURCE /* environ */
 #include "app.h"
@@ -12,22 +12,25 @@
 /* Debian's, which has Debian's packages; others are named by LAMELLA_PYTHON. */
 #define PYTHON "/usr/bin/python3"
 
+const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matplotlib"},
+                LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"};
+
 /* A package that is missing is found when it is imported, here or where a file is opened. */
 static const char Program[] =
     "import sys\n"
     "sys.path = [sys.argv[2]] * bool(sys.argv[2]) + sys.path[1:]\n" /* its own folder, not that where it is started */
     "try:\n"
-    "    from lamella.plot.__main__ import main\n"
-    "    sys.exit(main(sys.argv[1]))\n"
+    "    from importlib import import_module\n"
+    "    sys.exit(import_module(sys.argv[3]).main(sys.argv[1]))\n"
     "except ModuleNotFoundError as error:\n"
     "    if error.name.startswith('lamella'):\n"
-    "        print('lamella: pictures need the Python package lamella, the folder python of the sources', "
+    "        print(f'lamella: {sys.argv[4]} the Python package lamella, the folder python of the sources', "
     "file=sys.stderr)\n"
     "    else:\n"
-    "        print(f'lamella: pictures need the Python package {error.name} (Debian: python3-{error.name})', "
+    "        print(f'lamella: {sys.argv[4]} the Python package {error.name} (Debian: python3-{error.name})', "
     "file=sys.stderr)\n"
     "except ImportError as error:\n"
-    "    print(f'lamella: pictures need the Python package lamella: {error}', file=sys.stderr)\n"
+    "    print(f'lamella: {sys.argv[4]} the Python package lamella: {error}', file=sys.stderr)\n"
     "sys.exit(4)\n";
 
 /* The folder of the program, without a slash behind it; "" if it is not known. */
@@ -100,11 +103,12 @@ static int Await(pid_t child)
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-PetscErrorCode LamPythonDraw(json_t *request, int *exit_status)
+PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status)
 {
   const char *named = getenv("LAMELLA_PYTHON"), *python = named && *named ? named : PYTHON;
   char *text = json_dumps(request, 0), **environment, package[PETSC_MAX_PATH_LEN];
-  char *const argv[] = {(char *)python, "-c", (char *)Program, text, package, NULL};
+  char *const argv[] = {(char *)python, "-c", (char *)Program, text, package, (char *)run->module, (char *)run->need,
+                        NULL};
   pid_t child;
   int failed;
 
@@ -118,9 +122,8 @@ PetscErrorCode LamPythonDraw(json_t *request, int *exit_status)
   free(text);
   PetscCall(PetscFree(environment));
   PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
-             "pictures need Python 3 with the package matplotlib (Debian: python3-matplotlib): %s: %s; LAMELLA_PYTHON "
-             "names another one",
-             python, strerror(failed));
+             "%s Python 3 with the package %s (Debian: python3-%s): %s: %s; LAMELLA_PYTHON names another one", run->need,
+             run->package, run->package, python, strerror(failed));
   *exit_status = Await(child);
   PetscFunctionReturn(0);
 }

@@ -152,8 +152,8 @@ def statistics(tissue: Tissue) -> dict[str, Any]:
     whole = area.sum()
     if tissue.period is not None:
         whole = np.linalg.det(tissue.period)
-        told |= {"porosity": (whole - area.sum() + air) / whole, "porosity_junctions": air / whole,
-                 "porosity_spaces": max((whole - area.sum()) / whole, 0)}
+        spaces = max((whole - area.sum()) / whole, 0.0) if (tissue.edges.across < 0).any() else 0.0
+        told |= {"porosity": spaces + air / whole, "porosity_junctions": air / whole, "porosity_spaces": spaces}
     thickness = tissue.thickness()
     if thickness is not None:
         lumen = lumens(tissue, thickness)

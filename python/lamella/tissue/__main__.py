@@ -1,0 +1,77 @@
+"""What `lamella tissue` runs: one argument, a JSON object with its options as texts and where the tissue goes."""
+import json
+import re
+import sys
+
+import numpy as np
+
+from .. import Error, InputError, quantity
+from .make import Asked, make
+from .report import table
+
+INPUT, IO, FAULT = 2, 4, 70  # exit statuses (docs/reference/commands.md)
+NUMBERS = ("variation", "elongation", "aspect", "gas")
+UNIT = re.compile(r"\s*[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?\s*(.*\S)")  # of a quantity that is one
+
+
+def _quantity(request, name, dimension):
+    """A quantity in SI units."""
+    try:
+        return quantity(request[name], dimension)
+    except InputError as error:
+        raise InputError(f"--{name.replace('_', '-')} {error}") from None
+
+
+def _number(request, name):
+    try:
+        return float(request[name])
+    except ValueError:
+        raise InputError(f"--{name} {request[name]}: a number is wanted") from None
+
+
+def asked_of(request):
+    """Asked, of options as texts; lengths are in the unit of the size."""
+    size = _quantity(request, "size", "length")
+    unit = UNIT.match(request["size"]).group(1)
+    scale = quantity(f"1 {unit}", "length")
+    numbers = {name: _number(request, name) for name in NUMBERS if name in request}
+    if "wall_thickness" in request:
+        numbers["wall_thickness"] = _quantity(request, "wall_thickness", "length") / scale
+    if "direction" in request:
+        numbers["direction"] = np.degrees(_quantity(request, "direction", "angle"))
+    rounded = {name: float(f"{value:.12g}") for name, value in numbers.items()}  # 4e-06 m is 4 um
+    return Asked(request["cells"], float(f"{size / scale:.12g}"), unit, seed=request.get("seed", 0), **rounded)
+
+
+def run(request):
+    """Makes the tissue, writes it, and tells what it is."""
+    tissue, output = make(asked_of(request)), request["output"]
+    tissue.write(output)
+    if request.get("json"):
+        print(json.dumps({"file": output, "asked": tissue.made_by["asked"], "got": tissue.made_by["got"]}))
+    else:
+        print("\n".join(table(tissue)), f"wrote {output}", sep="\n")
+    sys.stdout.flush()
+
+
+def main(argument):
+    """Exit status of a request."""
+    try:
+        run(json.loads(argument))
+        return 0
+    except InputError as error:
+        status, message = INPUT, error
+    except OSError as error:
+        status, message = IO, error
+    except MemoryError:
+        status, message = FAULT, "out of memory"
+    except Error as error:
+        status, message = FAULT, error
+    except KeyboardInterrupt:
+        return 130
+    print(f"lamella tissue: {message}", file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
