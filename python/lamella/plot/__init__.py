@@ -5,7 +5,7 @@
     page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
-`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map` and `tradeoff` say which it is. All take
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff` and `cells` say which it is. All take
     title   text, or False: none
     size    width and height of the page, inches
     range   limits of the colour scale of the field, in its unit on the colour bar
@@ -13,13 +13,15 @@
 A Page is a matplotlib Figure with `save`; a notebook shows it as it is.
 """
 from importlib import import_module
+from pathlib import Path
 
 from .. import InputError
 from .page import Page, check_path
 from .read import Source
 
-__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "save", "fields", "Page"]
+__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
+_TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file")}
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -56,10 +58,11 @@ def _draw(kind, path, options):
 
 
 def _page(kind, path, options, page):
-    if kind == "tradeoff":
+    kind = kind or _kind_of_text(path)
+    if kind in _TEXTS:
         if options:
-            raise InputError(f"--{next(iter(options))}: a work-precision diagram is drawn as a whole")
-        return import_module(".work_precision", __name__).draw(path, page)
+            raise InputError(f"--{next(iter(options))}: {_TEXTS[kind][1]} is drawn as a whole")
+        return import_module(f".{_TEXTS[kind][0]}", __name__).draw(path, page)
     with Source(path) as source:
         module = _MODULES.get(source.kind)
         if module is None or kind not in (None, source.kind):
@@ -73,6 +76,14 @@ def _page(kind, path, options, page):
                 raise InputError(f"{path}: is of kind \"{source.kind}\"; --{name} draws files of {', '.join(kinds)}")
         drawn = import_module(f".{module}", __name__).draw(source, page, **options)
         return drawn if isinstance(drawn, Page) else list(drawn)
+
+
+def _kind_of_text(path):
+    """tradeoff or cells, of a file that is no HDF5; None: it may be one."""
+    if Path(path).suffix not in (".json", ".yaml", ".yml"):
+        return None
+    with open(path, encoding="utf-8", errors="replace") as file:
+        return "cells" if "lamella_tissue" in file.read() else "tradeoff"
 
 
 def draw(path, **options):
@@ -114,6 +125,11 @@ def map(path, field=None, **options):
 def tradeoff(path, **options):
     """The work-precision diagram of a tradeoff.json that `tradeoff -o` has written."""
     return _draw("tradeoff", path, options)
+
+
+def cells(path, **options):
+    """The cells of a tissue file (`tissue -o`) at rest: walls, lumens and air, one period outlined."""
+    return _draw("cells", path, options)
 
 
 def fields():

@@ -3,7 +3,7 @@ import json
 import sys
 
 from .. import Error, InputError
-from . import draw, fields, save, tradeoff
+from . import draw, fields, save
 from .page import check_path
 
 INPUT, IO, FAULT = 2, 4, 70  # exit statuses (docs/reference/commands.md)
@@ -25,7 +25,7 @@ def run(request):
     dpi, quiet, silent = (request.pop(name, None) for name in ("dpi", "quiet", "silent"))
     for output in outputs:
         check_path(output)
-    drawn = tradeoff(path, **request) if str(path).endswith(".json") else draw(path, **request)
+    drawn = draw(path, **request)
     for output in outputs:
         save(drawn, output, dpi, None if quiet or not isinstance(drawn, list) else _progress(len(drawn)))
         if not silent:

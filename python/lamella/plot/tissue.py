@@ -39,11 +39,11 @@ def field_of(name):
     return name, f"{label} ({unit})" if unit else label
 
 
-def _faded(colour, share):
+def faded(colour, share):
     return tuple(c + share * (1 - c) for c in to_rgb(colour))
 
 
-PALE = LinearSegmentedColormap.from_list("pale", [_faded(c, FADE) for c in FIELD(np.linspace(0, 1, 256))], N=256)
+PALE = LinearSegmentedColormap.from_list("pale", [faded(c, FADE) for c in FIELD(np.linspace(0, 1, 256))], N=256)
 
 
 class View:
@@ -150,14 +150,14 @@ def draw(view, cells, norm, gaps, pressure, undeformed=True):
     parts = [(shift, 0 if k == len(images) - 1 else FADE) for k, shift in enumerate(images)]
     order = 1.0
     for shift, fade in parts:
-        axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor=_faded(LUMEN, fade), edgecolor="none", zorder=1))
+        axes.add_artist(PathPatch(_shifted(lumens, shift), facecolor=faded(LUMEN, fade), edgecolor="none", zorder=1))
     points, triangles, values = meshes.field(cells.mesh, cells.x, cells.values, view.scale, len(images))
     for shift, fade in parts:
         order += 0.001
         painted = meshes.paint(axes, points + shift, triangles, values, norm, PALE if fade else FIELD)
         painted.set_zorder(order)
     for shift, fade in parts:
-        ink = _faded(DARK, 0.8 * fade)
+        ink = faded(DARK, 0.8 * fade)
         if thin:
             _widen(axes, cells, thickness, norm, shift, PALE if fade else FIELD)
         else:

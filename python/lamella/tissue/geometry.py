@@ -32,6 +32,11 @@ def _rows(tissue: Tissue) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarra
     return cell, tissue.vertices[start], tissue.vertices[end], before
 
 
+def before(tissue: Tissue) -> np.ndarray:
+    """Number [m] of the edge of the same cell that ends where each edge starts."""
+    return _rows(tissue)[3]
+
+
 def moments(tissue: Tissue) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Area [cells], negative of clockwise cells, centroid [cells, 2] and second moments of area about it [cells, 2, 2]."""
     cell, a, b, _ = _rows(tissue)
@@ -67,8 +72,14 @@ def shortest_edges(tissue: Tissue) -> np.ndarray:
     return shortest
 
 
-def corner_air(tissue: Tissue, angle: np.ndarray) -> np.ndarray:
-    """Air [m] between the corner of each cell and the arc that rounds it, per square of the cut d along its edges.
+def cuts(tissue: Tissue) -> np.ndarray:
+    """Cut d [m] of the corner of each cell at the start of each of its edges."""
+    from .file import TO_CUT
+    return tissue.radii()[tissue.edges.start] * TO_CUT
+
+
+def corner_air(angle: np.ndarray) -> np.ndarray:
+    """Air [m] between corners of cells with these interior angles and the arcs that round them, per square of the cut d.
 
     The kite between corner, ends of the arc and its centre is d^2 tan(A/2), the sector in it (pi - A) tan(A/2)^2 / 2 of
     d^2. In a reflex corner the arc bulges out of the cell: the same formula is then negative, and takes away from what
@@ -80,35 +91,37 @@ def corner_air(tissue: Tissue, angle: np.ndarray) -> np.ndarray:
     return np.where(flat, rest / 6, t - t**2 * rest / 2)
 
 
-def junction_air(tissue: Tissue, cut: np.ndarray) -> float:
-    """Area of the air at junctions that are cut at the distance cut [vertices] from each vertex along its edges."""
-    return float((corner_air(tissue, angles(tissue)) * cut[tissue.edges.start] ** 2).sum())
+def junction_air(tissue: Tissue) -> float:
+    """Area of the air at junctions."""
+    return float((corner_air(angles(tissue)) * cuts(tissue) ** 2).sum())
+
+
+def lumen_corners(tissue: Tissue, thickness: np.ndarray) -> np.ndarray:
+    """Corners [m, 2] of the lumens where two edges meet that are shifted inwards by thickness [m]: of each cell at the
+    start of each of its edges."""
+    _, a, b, before = _rows(tissue)
+    along = b - a
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    sine = _cross(along[before], along)[:, None]
+    straight = np.abs(sine) < 1e-9  # a vertex in the middle of a face
+    t, t0 = thickness[:, None], thickness[before, None]
+    inwards = np.column_stack([-along[:, 1], along[:, 0]]) * t
+    return a + np.where(straight, inwards, (along * t0 - along[before] * t) / np.where(straight, 1, sine))
 
 
 def lumens(tissue: Tissue, thickness: np.ndarray) -> np.ndarray:
     """Area [cells] of the lumens of cells whose walls are thickness [m] thick: the polygon of the shifted edges, without
-    what the inner arcs of corners cut off where the corner's radius is larger than the wall."""
-    from .file import TO_CUT
-    cell, a, b, before = _rows(tissue)
-    along = b - a
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    normal = np.column_stack([-along[:, 1], along[:, 0]])
-    angle = angles(tissue)
-    sine = _cross(along[before], along)
-    straight = np.abs(sine) < 1e-9  # a vertex in the middle of a face
-    t, t0 = thickness, thickness[before]
-    sine = np.where(straight, 1, sine)[:, None]
-    inner = a + np.where(straight[:, None], normal * t[:, None],
-                         (along * t0[:, None] - along[before] * t[:, None]) / sine)
+    what arcs cut off where the corner's radius is larger than the wall."""
+    cell, _, _, before = _rows(tissue)
+    n, inner = len(tissue.cells), lumen_corners(tissue, thickness)
+    inner = inner - np.array([tissue.polygon(k).mean(0) for k in range(n)])[cell]
     end = np.empty_like(inner)
     end[before] = inner
-    n = len(tissue.cells)
-    origin = np.array([tissue.polygon(k).mean(0) for k in range(n)])[cell]
-    area = np.bincount(cell, _cross(inner - origin, end - origin), n) / 2
-    cut = tissue.radii()[tissue.edges.start] * TO_CUT
-    outer = cut * np.tan(np.minimum(angle, 3.1) / 2)
-    left = np.maximum(outer - (t + t0) / 2, 0) * (angle < np.pi)
-    return area - np.bincount(cell, left**2 * (1 / np.tan(angle / 2) - (np.pi - angle) / 2), n)
+    area = np.bincount(cell, _cross(inner, end), n) / 2
+    angle = angles(tissue)
+    convex = np.clip(angle, 1e-6, 3.1)  # at a flatter corner nothing is cut off that matters
+    arc = np.maximum(cuts(tissue) * np.tan(convex / 2) - (thickness + thickness[before]) / 2, 0) * (angle < np.pi)
+    return area - np.bincount(cell, (arc / np.tan(convex / 2)) ** 2 * corner_air(convex), n)
 
 
 # ---- statistics ----
@@ -133,7 +146,6 @@ def _sides(tissue: Tissue) -> np.ndarray:
 
 def statistics(tissue: Tissue) -> dict[str, Any]:
     """Numbers of a tissue. Areas are those of the polygons of cells, with their walls and without rounded corners."""
-    from .file import TO_CUT
     area, _, second = moments(tissue)
     e = tissue.edges
     length = length_of(tissue)
@@ -148,7 +160,7 @@ def statistics(tissue: Tissue) -> dict[str, Any]:
         "shape_factor": shape.mean(), "shape_factor_deviation": shape.std(), "neighbours": sides.mean(),
         "neighbours_count": {int(k): int((sides == k).sum()) for k in np.unique(sides)},
         "edge_shortest": length.min(), "edge_mean": length.mean(), "angle_smallest": np.degrees(angles(tissue).min())}
-    air = junction_air(tissue, tissue.radii() * TO_CUT)
+    air = junction_air(tissue)
     whole = area.sum()
     if tissue.period is not None:
         whole = np.linalg.det(tissue.period)

@@ -3,26 +3,27 @@ elongated cells are round, without short edges (merge.py) and with air (spaces.p
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtri
 
-from .. import Error, InputError
+from .. import InputError
 from . import geometry, spaces
 from .file import Tissue
 from .merge import Failed, without_short_edges
-from .tessellation import Tessellation, fit_areas, reduced, relax, spread, wrap
+from .tessellation import Tessellation, reduced, relax, spread, wrap
 
-TRIES = 12  #: of sites at random
-CLOSE = 0.01  #: error of the mean second moments for which no other sites are tried
+TRIES = 8  #: of sites at random
+CLOSE = 0.015  #: error of the mean second moments for which no other sites are tried
 AT_JUNCTIONS = 0.8  #: of the air that junctions could have, where cells are missing, too: room for the rest
 SETTLE = 8  #: steps of Lloyd's method after missing cells have got their areas
-CHOSEN, ALMOST = 0.4, 0.46  #: of a cell's perimeter that may border spaces when they are chosen, and when their areas are
-#: met: less than spaces.MOST_AIR, since faces still change their lengths
-ROUNDS = 8  #: of choosing
+ALMOST = 0.48  #: of a cell's perimeter may border spaces before short edges are merged, which changes faces a little
+SPACE = 1.4  #: area of a missing cell over the mean of the others: at 1 too many cells border two of them for a gas of 0.3
+ROUNDS = 12  #: of choosing: the areas of those chosen change their neighbours' faces
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,9 @@ class _Plan:
         return np.full(self.missing, self.cells * self.share / (1 - self.share) / max(self.missing, 1))
 
 
+_Base: TypeAlias = tuple[Tissue, np.ndarray, np.ndarray]  # all cells, their areas over the mean, which are to be missing
+
+
 def _tissue(t: Tessellation, asked: Asked, period: np.ndarray) -> Tissue:
     """The tessellation's cells in the unit of the tissue."""
     vertices, cells = t.polygons()
@@ -102,25 +106,23 @@ def _tissue(t: Tessellation, asked: Asked, period: np.ndarray) -> Tissue:
     return Tissue(asked.unit, scale * period, scale * vertices @ asked.stretch, cells, asked.wall_thickness)
 
 
-def _relaxed(asked: Asked, plan: _Plan, rng: np.random.Generator) -> tuple[Tissue, np.ndarray, np.ndarray]:
-    """All cells, their areas over the mean, and numbers of those that are to be missing. Failed: too few can be."""
+def _relaxed(asked: Asked, plan: _Plan, rng: np.random.Generator) -> _Base:
+    """All cells, their areas over the mean, and which are to be missing (booleans). Failed: too few can be."""
     ranks = areas(plan.cells, asked.variation)
     wanted = rng.permutation(np.concatenate([ranks, plan.areas_missing]))
     period = np.sqrt(wanted.sum()) * np.diag([asked.aspect**0.5, asked.aspect**-0.5])
     round_period = reduced(period @ np.linalg.inv(asked.stretch))
     t = relax(spread(len(wanted), round_period, rng), wanted, round_period)
-    order, missing = rng.permutation(len(wanted)), np.array([], int)
-    for _ in range(ROUNDS if plan.missing else 0):
-        chosen = spaces.choose(_tissue(t, asked, period), plan.missing, order, CHOSEN)
-        if chosen is None:
-            raise Failed("too few cells can be missing")
-        missing, rest = chosen, np.setdiff1d(order, chosen)
-        order = np.concatenate([missing, np.setdiff1d(order, missing, assume_unique=True)])
-        wanted[missing], wanted[rest] = plan.areas_missing, _ranked(t.area[rest], ranks)
-        t = relax(wrap(t.centroid, round_period), wanted, round_period, SETTLE)
+    missing = np.zeros(len(wanted), bool)
+    if not plan.missing:
+        return _tissue(t, asked, period), wanted, missing
+    for k in range(ROUNDS):
+        missing = spaces.choose(_tissue(t, asked, period), plan.missing, missing, rng.permutation(len(wanted)))
+        wanted[missing], wanted[~missing] = plan.areas_missing, _ranked(t.area[~missing], ranks)
+        t = relax(wrap(t.centroid, round_period), wanted, round_period, 0 if k else SETTLE)
         if spaces.Contacts(_tissue(t, asked, period)).hold(missing, ALMOST):
-            break
-    return _tissue(t, asked, period), wanted, missing
+            return _tissue(t, asked, period), wanted, missing
+    raise Failed("cells at spaces have too few neighbours")
 
 
 def _ranked(values: np.ndarray, sorted_areas: np.ndarray) -> np.ndarray:
@@ -133,49 +135,54 @@ def _ranked(values: np.ndarray, sorted_areas: np.ndarray) -> np.ndarray:
 def _misfit(tissue: Tissue, missing: np.ndarray, asked: Asked) -> float:
     """How far the cells' mean second moments are from those asked for: 0.01 is about 1 % of the elongation."""
     area, _, second = geometry.moments(tissue)
-    kept = np.setdiff1d(np.arange(len(area)), missing)
-    mean = (second[kept] / area[kept, None, None] ** 2).mean(0)
+    mean = (second / area[:, None, None] ** 2)[~missing].mean(0)
     back = np.linalg.inv(asked.stretch)
     tensor = back @ mean @ back
     values = np.linalg.eigvalsh(tensor)
     return float(np.sqrt(values[1] / values[0]) - 1)
 
 
-def _finished(base: tuple[Tissue, np.ndarray, np.ndarray], asked: Asked) -> tuple[Tissue, int]:
+def _finished(base: _Base, asked: Asked) -> tuple[Tissue, int]:
     """Without short edges and missing cells; number of merged edges. Failed: it cannot be had."""
     tissue, wanted, missing = base
     tissue, merged = without_short_edges(tissue, wanted * asked.area, asked.wall_thickness or 0.0)
-    if len(missing):
-        if not spaces.Contacts(tissue).hold(missing):
+    try:
+        if missing.any() and not spaces.Contacts(tissue).hold(missing):
             raise Failed("cells at spaces have lost too many neighbours")
         tissue = spaces.without(tissue, missing)
-    try:
         tissue.check()
     except InputError as error:
         raise Failed(str(error)) from None
     return tissue, merged
 
 
-def _best(asked: Asked, plan: _Plan) -> tuple[Tissue, int]:
-    """Of several tessellations the one whose mean second moments are nearest to those asked for."""
-    found, why = [], "?"
+def _bases(asked: Asked, plan: _Plan, why: list[str]) -> Iterator[_Base]:
+    """Tessellations of other sites: those that are CLOSE as they are found, then the others, the nearest one first."""
+    far = []
     for attempt in range(TRIES):
-        rng = np.random.default_rng([asked.seed, plan.missing, attempt])
         try:
-            base = _relaxed(asked, plan, rng)
+            base = _relaxed(asked, plan, np.random.default_rng([asked.seed, plan.missing, attempt]))
         except Failed as error:
-            why = str(error)
+            why.append(str(error))
             continue
-        found.append((_misfit(base[0], base[2], asked), attempt, base))
-        if found[-1][0] < CLOSE:
-            break
-    for _, _, base in sorted(found, key=lambda entry: entry[:2]):
+        misfit = _misfit(base[0], base[2], asked)
+        if misfit < CLOSE:
+            yield base
+        else:
+            far.append((misfit, attempt, base))
+    yield from (base for _, _, base in sorted(far, key=lambda entry: entry[:2]))
+
+
+def _best(asked: Asked, plan: _Plan) -> tuple[Tissue, int]:
+    """Of several tessellations that whose mean second moments are nearest to those asked for, finished."""
+    why: list[str] = []
+    for base in _bases(asked, plan, why):
         try:
             return _finished(base, asked)
         except Failed as error:
-            why = str(error)
-    raise InputError(f"no tissue of {asked.cells} cells found in {TRIES} trials: {why}; take thinner walls, less gas, less "
-                     "variation or more cells")
+            why.append(str(error))
+    raise InputError(f"no tissue of {asked.cells} cells found in {TRIES} trials: {why[-1]}; take thinner walls, less gas, "
+                     "less variation or more cells")
 
 
 def make(asked: Asked) -> Tissue:
@@ -200,7 +207,7 @@ def _planned(asked: Asked, before: _Plan, room: float) -> _Plan:
     a cell where junctions can have less."""
     share = asked.gas - AT_JUNCTIONS * room
     share = max(share, min(0.5 / asked.cells, 0.95 * asked.gas))
-    count = max(1, round(asked.cells * share / (1 - share)), before.missing)
+    count = max(1, round(asked.cells * share / (1 - share) / SPACE), before.missing)
     return _Plan(asked.cells, count, share)
 
 

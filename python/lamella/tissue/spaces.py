@@ -1,7 +1,6 @@
 """Air in tissue: cells that are missing, and rounded corners at the junctions."""
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +10,10 @@ from scipy.sparse.csgraph import breadth_first_order
 
 from . import geometry
 from .file import LONGEST_CUT, TO_CUT, Tissue
+from .merge import Failed
 
 MOST_AIR = 0.5  #: of a cell's perimeter may border missing cells
+CHOSEN = (0.3, 0.36, 0.42, 0.45)  #: the same while cells are chosen: less, since faces still change their lengths
 LARGEST_CUT = 0.999 * LONGEST_CUT  #: less than what is refused, also after the file's 12 digits
 
 
@@ -30,48 +31,56 @@ class Contacts:
         length = geometry.length_of(tissue)
         self.length, self.perimeter = length[shared], np.bincount(e.cell, length)
 
-    def hold(self, missing: Sequence[int] | np.ndarray, most: float = MOST_AIR) -> bool:
-        """Whether the cells that are not missing have faces with others along enough of their perimeters, and hang
-        together, over the period in both directions."""
-        kept = np.ones(self.count, bool)
-        kept[np.asarray(missing, int)] = False
+    def hold(self, missing: np.ndarray, most: float = MOST_AIR) -> bool:
+        """Whether the cells that are not missing (booleans) have faces with others along enough of their perimeters, and
+        hang together, over the period in both directions."""
+        kept = ~missing
         inside = kept[self.cell] & kept[self.other]
         cell, other, shift = self.cell[inside], self.other[inside], self.shift[inside]
         faces = np.bincount(cell, self.length[inside], self.count)
         if (faces[kept] < (1 - most) * self.perimeter[kept] * (1 - 1e-12)).any():
             return False
-        graph = coo_matrix((np.arange(1, len(cell) + 1), (cell, other)), (self.count, self.count)).tocsr()
-        order, before = breadth_first_order(graph, np.flatnonzero(kept)[0])
+        graph = coo_matrix((np.ones(len(cell)), (cell, other)), (self.count, self.count)).tocsr()
+        order, parent = breadth_first_order(graph, np.flatnonzero(kept)[0])
         if len(order) < kept.sum():
             return False
-        return self._wraps(cell, other, shift, order, before)
-
-    def _wraps(self, cell, other, shift, order, before) -> bool:  # type: ignore[no-untyped-def]
-        """Whether ways from a cell to its images lead over both periods: places of cells along a tree, and the shifts
-        by which other faces differ from them."""
-        step = {(c, o): s for c, o, s in zip(cell.tolist(), other.tolist(), shift)}
-        place = np.zeros((self.count, 2), int)
-        for c in order[1:]:
-            place[c] = place[before[c]] + step[int(before[c]), int(c)]
+        # places of cells along the tree, in periods: sums to the parent, its parent, ... in doubling steps
+        pairs, number = np.unique(cell * self.count + other, return_index=True)
+        place, up = np.zeros((self.count, 2), int), np.where(parent < 0, np.arange(self.count), parent)
+        below = order[1:]
+        place[below] = shift[number[np.searchsorted(pairs, parent[below] * self.count + below)]]
+        while (up[up] != up).any():
+            place, up = place + place[up], up[up]
+        # faces off the tree lead to images: they must do so over both periods
         return bool(np.linalg.matrix_rank(place[cell] + shift - place[other]) == 2)
 
 
-def choose(tissue: Tissue, count: int, order: np.ndarray, most: float) -> np.ndarray | None:
-    """Numbers [count] of cells that can be missing, the first ones possible in this order [cells]; None: too few can.
-    most: of a cell's perimeter that may border them."""
-    contacts, missing = Contacts(tissue), []
-    for cell in order.tolist():
-        if len(missing) == count:
-            break
-        if contacts.hold([*missing, cell], most):
-            missing.append(cell)
-    return np.array(missing, int) if len(missing) == count else None
+def choose(tissue: Tissue, count: int, before: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Which cells can be missing (booleans), as many as count. before: those that shall be (booleans), if they still can;
+    order [cells]: the others are the first possible ones of it, at first those by which no cell loses much. Failed: too
+    few can be."""
+    contacts = Contacts(tissue)
+    first = np.searchsorted(contacts.cell, np.arange(contacts.count + 1))
+    air, missing = np.zeros(contacts.count), np.zeros(contacts.count, bool)
+    for most, cells in [(CHOSEN[-1], np.flatnonzero(before)), *((most, order) for most in CHOSEN)]:
+        for cell in cells:
+            if missing.sum() == count:
+                break
+            faces, more = slice(first[cell], first[cell + 1]), air.copy()
+            np.add.at(more, contacts.other[faces], contacts.length[faces])
+            near = contacts.other[faces][~missing[contacts.other[faces]]]
+            if missing[cell] or (more[near] > most * contacts.perimeter[near]).any():
+                continue
+            missing[cell] = before[cell] or contacts.hold(missing | (np.arange(contacts.count) == cell))
+            air = more if missing[cell] else air
+    if missing.sum() < count or not contacts.hold(missing):
+        raise Failed("too few cells can be missing")
+    return missing
 
 
 def without(tissue: Tissue, missing: np.ndarray) -> Tissue:
-    """The tissue without these cells, and without vertices of none."""
-    gone = set(np.asarray(missing).tolist())
-    cells = [cell for k, cell in enumerate(tissue.cells) if k not in gone]
+    """The tissue without these cells (booleans), and without vertices of none."""
+    cells = [cell for cell, gone in zip(tissue.cells, missing) if not gone]
     used, number = np.unique(np.concatenate(cells), return_inverse=True)
     bounds = np.cumsum([len(c) for c in cells])[:-1]
     return replace(tissue, vertices=tissue.vertices[used], cells=np.split(np.ravel(number), bounds))
@@ -83,7 +92,7 @@ class Junctions:
     def __init__(self, tissue: Tissue) -> None:
         self.tissue = tissue
         self.limit = LARGEST_CUT * geometry.shortest_edges(tissue)[tissue.points[0]]
-        corner = geometry.corner_air(tissue, geometry.angles(tissue))
+        corner = geometry.corner_air(geometry.angles(tissue))
         self._air = np.bincount(tissue.edges.start, corner, len(tissue.vertices))  # over d^2, of each vertex
 
     def air(self, radius: float) -> float:
