@@ -17,10 +17,10 @@ packages=(
   libopenblas0-serial # MUMPS is 1.4 to 2.4 times faster with it than with the reference BLAS
   libfyaml-dev libudunits2-dev libjansson-dev zlib1g-dev
   libmuparser-dev # expressions of the position
-  python3-numpy python3-cffi python3-yaml python3-h5py python3-matplotlib # of the Python package
+  python3-numpy python3-cffi python3-yaml python3-h5py python3-matplotlib python3-scipy # of the Python package
 )
 test_packages=(libcmocka-dev python3-pip python3-setuptools python3-venv python3-wheel python3-meshio
-  python3-nbclient python3-ipykernel python3-scipy) # of the notebooks
+  python3-nbclient python3-ipykernel) # of the notebooks
 fuzz_packages=(clang libclang-rt-dev)
 
 # One thread per rank, on one machine as on a cluster; Open MPI refuses root unless it is told.
@@ -96,7 +96,7 @@ case "${1-run}" in
     ctest --test-dir build -j2 --output-on-failure -LE 'slow|bench'
     ;;
   notebook)
-    install_missing "${packages[@]}" python3-scipy python3-ipykernel jupyter-notebook
+    install_missing "${packages[@]}" python3-ipykernel jupyter-notebook
     build release build --target lamella lamella_program lamella_shared
     install_package
     exec jupyter notebook --notebook-dir=docs/notebooks
