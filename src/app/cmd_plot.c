@@ -160,14 +160,14 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   PetscBool done;
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args,
-                            "plot FILE.h5 [-o FIG.png|.svg|.pdf] [--state N|last | --strip] [--field NAME] [--film]\n"
-                            "                    [--map MAP.h5] [--angle ANGLE] [--suction PRESSURE | --turgor "
-                            "PRESSURE] [--accuracy SHARE]\n"
-                            "                    [--size WIDTHxHEIGHT] [--title TEXT | --no-title] [--range LOW,HIGH]\n"
-                            "                    [--x LOW,HIGH] [--y LOW,HIGH] [--dpi N] [--quiet]",
-                            "Draws what the file holds, with Python and its package matplotlib.", options, 1, &input,
-                            &done, exit_status));
+  PetscCall(LamOptionsParse(
+      args,
+      "plot FILE.h5|.json [-o FIG.png|.svg|.pdf] [--state N|last | --strip] [--field NAME] [--film]\n"
+      "                    [--map MAP.h5] [--angle ANGLE] [--suction PRESSURE | --turgor "
+      "PRESSURE] [--accuracy SHARE]\n"
+      "                    [--size WIDTHxHEIGHT] [--title TEXT | --no-title] [--range LOW,HIGH]\n"
+      "                    [--x LOW,HIGH] [--y LOW,HIGH] [--dpi N] [--quiet]",
+      "Draws what the file holds, with Python and its package matplotlib.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (r.title && r.no_title)
     (void)LamUsageError("plot", exit_status, "--title and --no-title: one of them");

@@ -53,7 +53,10 @@ PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status)
                             options, 0, NULL, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!r.output || !r.cells || !r.size)
-    (void)LamUsageError("tissue", exit_status, "%s is missing", !r.output ? "-o OUT.json" : !r.cells ? "--cells N" : "--size LENGTH");
+    (void)LamUsageError("tissue", exit_status, "-o OUT.json, --cells N and --size LENGTH are wanted: %s is missing",
+                        !r.output  ? "the first"
+                        : !r.cells ? "the second"
+                                   : "the third");
   else
     PetscCall(Make(&r, exit_status));
   PetscFunctionReturn(0);

@@ -310,8 +310,8 @@ static PetscErrorCode DrawFiles(const char directory[], int *exit_status)
   PetscCall(PetscSNPrintf(json, sizeof(json), "%s/tradeoff.json", directory));
   PetscCall(PetscSNPrintf(png, sizeof(png), "%s/tradeoff.png", directory));
   PetscCall(PetscSNPrintf(svg, sizeof(svg), "%s/tradeoff.svg", directory));
-  PetscCall(
-      LamPythonRun(&LamPythonPlot, json_pack("{s:s, s:[s,s], s:b}", "input", json, "outputs", png, svg, "silent", 1), exit_status));
+  PetscCall(LamPythonRun(
+      &LamPythonPlot, json_pack("{s:s, s:[s,s], s:b}", "input", json, "outputs", png, svg, "silent", 1), exit_status));
   if (*exit_status) fprintf(stderr, "lamella tradeoff: %s has the numbers; lamella plot draws it again\n", json);
   PetscFunctionReturn(0);
 }

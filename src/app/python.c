@@ -107,8 +107,8 @@ PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_sta
 {
   const char *named = getenv("LAMELLA_PYTHON"), *python = named && *named ? named : PYTHON;
   char *text = json_dumps(request, 0), **environment, package[PETSC_MAX_PATH_LEN];
-  char *const argv[] = {(char *)python, "-c", (char *)Program, text, package, (char *)run->module, (char *)run->need,
-                        NULL};
+  char *const argv[] = {(char *)python,    "-c", (char *)Program, text, package, (char *)run->module,
+                        (char *)run->need, NULL};
   pid_t child;
   int failed;
 
@@ -122,8 +122,8 @@ PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_sta
   free(text);
   PetscCall(PetscFree(environment));
   PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
-             "%s Python 3 with the package %s (Debian: python3-%s): %s: %s; LAMELLA_PYTHON names another one", run->need,
-             run->package, run->package, python, strerror(failed));
+             "%s Python 3 with the package %s (Debian: python3-%s): %s: %s; LAMELLA_PYTHON names another one",
+             run->need, run->package, run->package, python, strerror(failed));
   *exit_status = Await(child);
   PetscFunctionReturn(0);
 }

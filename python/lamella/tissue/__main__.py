@@ -2,6 +2,7 @@
 import json
 import re
 import sys
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ NUMBERS = ("variation", "elongation", "aspect", "gas")
 UNIT = re.compile(r"\s*[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?\s*(.*\S)")  # of a quantity that is one
 
 
-def _quantity(request, name, dimension):
+def _quantity(request: dict[str, Any], name: str, dimension: str) -> float:
     """A quantity in SI units."""
     try:
         return quantity(request[name], dimension)
@@ -22,17 +23,17 @@ def _quantity(request, name, dimension):
         raise InputError(f"--{name.replace('_', '-')} {error}") from None
 
 
-def _number(request, name):
+def _number(request: dict[str, Any], name: str) -> float:
     try:
         return float(request[name])
     except ValueError:
         raise InputError(f"--{name} {request[name]}: a number is wanted") from None
 
 
-def asked_of(request):
+def asked_of(request: dict[str, Any]) -> Asked:
     """Asked, of options as texts; lengths are in the unit of the size."""
     size = _quantity(request, "size", "length")
-    unit = UNIT.match(request["size"]).group(1)
+    unit = UNIT.sub(r"\1", request["size"]).strip()
     scale = quantity(f"1 {unit}", "length")
     numbers = {name: _number(request, name) for name in NUMBERS if name in request}
     if "wall_thickness" in request:
@@ -43,7 +44,7 @@ def asked_of(request):
     return Asked(request["cells"], float(f"{size / scale:.12g}"), unit, seed=request.get("seed", 0), **rounded)
 
 
-def run(request):
+def run(request: dict[str, Any]) -> None:
     """Makes the tissue, writes it, and tells what it is."""
     tissue, output = make(asked_of(request)), request["output"]
     tissue.write(output)
@@ -54,19 +55,19 @@ def run(request):
     sys.stdout.flush()
 
 
-def main(argument):
+def main(argument: str) -> int:
     """Exit status of a request."""
     try:
         run(json.loads(argument))
         return 0
     except InputError as error:
-        status, message = INPUT, error
+        status, message = INPUT, str(error)
     except OSError as error:
-        status, message = IO, error
+        status, message = IO, str(error)
     except MemoryError:
         status, message = FAULT, "out of memory"
     except Error as error:
-        status, message = FAULT, error
+        status, message = FAULT, str(error)
     except KeyboardInterrupt:
         return 130
     print(f"lamella tissue: {message}", file=sys.stderr)

@@ -79,7 +79,8 @@ class Tissue:
             inverse = np.linalg.inv(self.period)
             share = self.vertices @ inverse % 1.0
             share[share >= 1] = 0  # rounding
-            near = cKDTree(share, boxsize=1.0).query_pairs(tolerance * np.linalg.norm(inverse, 2), output_type="ndarray")
+            reach = tolerance * np.linalg.norm(inverse, 2)
+            near = cKDTree(share, boxsize=1.0).query_pairs(reach, output_type="ndarray")
             away = self.vertices[near[:, 0]] - self.vertices[near[:, 1]]
             away -= np.rint(away @ inverse) @ self.period
             pairs = near[np.linalg.norm(away, axis=1) < tolerance]
@@ -101,16 +102,16 @@ class Tissue:
         end = np.concatenate([np.roll(c, -1) for c in self.cells])
         point, shift = self.points
         along = shift[end] - shift[start]
-        forth = map(tuple, np.column_stack([point[start], point[end], along]).tolist())
-        back = map(tuple, np.column_stack([point[end], point[start], -along]).tolist())
-        number: dict[tuple[int, ...], int] = {}
-        for k, key in enumerate(forth):
+        forth = np.column_stack([point[start], point[end], along])
+        back = np.column_stack([point[end], point[start], -along])
+        number: dict[bytes, int] = {}
+        for k, key in enumerate(row.tobytes() for row in forth):
             if key in number:
                 other = cell[number[key]]
-                raise InputError(f"cells {other} and {cell[k]} have an edge in the same direction, from vertex {start[k]} "
-                                 f"to {end[k]}: they overlap")
+                raise InputError(f"cells {other} and {cell[k]} have an edge in the same direction, from vertex "
+                                 f"{start[k]} to {end[k]}: they overlap")
             number[key] = k
-        across = np.array([number.get(key, -1) for key in back])
+        across = np.array([number.get(row.tobytes(), -1) for row in back])
         return Edges(cell, start, end, across, np.concatenate([[0], np.cumsum(count)]))
 
     def neighbours(self) -> list[np.ndarray]:
@@ -220,12 +221,13 @@ def _object(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _numbers(told: dict[str, Any], name: str, columns: int | None = None) -> np.ndarray:
+    wanted = f"{name}: rows of {columns} numbers are wanted" if columns else f"{name}: numbers are wanted"
     try:
         values = np.array(told[name], dtype=float)
     except (TypeError, ValueError):
-        raise InputError(f"{name}: rows of {columns} numbers are wanted" if columns else f"{name}: numbers are wanted") from None
+        raise InputError(wanted) from None
     if columns and (values.ndim != 2 or values.shape[1] != columns):
-        raise InputError(f"{name}: rows of {columns} numbers are wanted")
+        raise InputError(wanted)
     if not np.isfinite(values).all():
         raise InputError(f"{name}: a number is not finite")
     return values
@@ -266,8 +268,8 @@ def _from(told: dict[str, Any]) -> Tissue:
     tissue = Tissue(told["unit"], period, vertices, _cells(told, len(vertices)), told.get("wall_thickness"),
                     float(radius) if radius.ndim == 0 else radius, told.get("classes"), told.get("face_classes"),
                     told.get("made_by") or {})
-    if np.ndim(tissue.corner_radius) and len(tissue.corner_radius) != len(vertices):  # type: ignore[arg-type]
-        raise InputError(f"corner_radius: {len(tissue.corner_radius)} numbers for {len(vertices)} vertices")  # type: ignore
+    if radius.ndim and radius.shape != (len(vertices),):
+        raise InputError(f"corner_radius: {len(radius)} numbers for {len(vertices)} vertices")
     for name in ("classes", "face_classes"):
         if told.get(name) is not None and len(told[name]) != len(tissue.cells):
             raise InputError(f"{name}: {len(told[name])} entries for {len(tissue.cells)} cells")

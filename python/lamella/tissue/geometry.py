@@ -38,7 +38,7 @@ def before(tissue: Tissue) -> np.ndarray:
 
 
 def moments(tissue: Tissue) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Area [cells], negative of clockwise cells, centroid [cells, 2] and second moments of area about it [cells, 2, 2]."""
+    """Area [cells], negative of clockwise cells, centroid [cells, 2], second moments of area about it [cells, 2, 2]."""
     cell, a, b, _ = _rows(tissue)
     n = len(tissue.cells)
     origin = np.array([tissue.polygon(k).mean(0) for k in range(n)])
@@ -79,7 +79,7 @@ def cuts(tissue: Tissue) -> np.ndarray:
 
 
 def corner_air(angle: np.ndarray) -> np.ndarray:
-    """Air [m] between corners of cells with these interior angles and the arcs that round them, per square of the cut d.
+    """Air [m] between corners of cells with these interior angles and the arcs that round them, over the cut d squared.
 
     The kite between corner, ends of the arc and its centre is d^2 tan(A/2), the sector in it (pi - A) tan(A/2)^2 / 2 of
     d^2. In a reflex corner the arc bulges out of the cell: the same formula is then negative, and takes away from what
@@ -110,8 +110,8 @@ def lumen_corners(tissue: Tissue, thickness: np.ndarray) -> np.ndarray:
 
 
 def lumens(tissue: Tissue, thickness: np.ndarray) -> np.ndarray:
-    """Area [cells] of the lumens of cells whose walls are thickness [m] thick: the polygon of the shifted edges, without
-    what arcs cut off where the corner's radius is larger than the wall."""
+    """Area [cells] of the lumens of cells whose walls are thickness [m] thick: the polygon of the shifted edges, but
+    for what arcs cut off where the corner's radius is larger than the wall."""
     cell, _, _, before = _rows(tissue)
     n, inner = len(tissue.cells), lumen_corners(tissue, thickness)
     inner = inner - np.array([tissue.polygon(k).mean(0) for k in range(n)])[cell]
@@ -184,9 +184,10 @@ def check(tissue: Tissue) -> None:
     area = moments(tissue)[0]
     if area.min() <= 0:
         raise InputError(f"cell {area.argmin()}: its vertices are not counter-clockwise")
-    point, e = tissue.points[0], tissue.edges
-    if (point[e.start] == point[e.end]).any() and (length_of(tissue) < 1e-6 * tissue.size).any():
-        raise InputError(f"cell {e.cell[length_of(tissue).argmin()]}: an edge has no length")
+    e, length = tissue.edges, length_of(tissue)
+    if length.min() < 1e-6 * tissue.size:
+        k = int(length.argmin())
+        raise InputError(f"cell {e.cell[k]}: its edge from vertex {e.start[k]} has no length")
     if tissue.period is not None and area.sum() > np.linalg.det(tissue.period) * (1 + 1e-9):
         raise InputError("the cells have more area than a period: they overlap")
     _check_crossings(tissue)
@@ -232,15 +233,15 @@ def _check_crossings(tissue: Tissue) -> None:
     within = (np.abs(high) < tolerance) & (place > tolerance) & (place < length - tolerance)
     if within.any():
         k = np.flatnonzero(within)[0]
-        raise InputError(f"cell {e.cell[i[k]]}: vertex {e.start[j[k]]} of cell {e.cell[j[k]]} lies within its edge from "
-                         f"vertex {e.start[i[k]]} to {e.end[i[k]]}: where cells meet all of them have the vertex")
+        raise InputError(f"cell {e.cell[i[k]]}: vertex {e.start[j[k]]} of cell {e.cell[j[k]]} lies within its edge "
+                         f"from vertex {e.start[i[k]]} to {e.end[i[k]]}: where cells meet all of them have the vertex")
     back = q - p
     size = np.linalg.norm(back, axis=1)
     low, far = _cross(back, a[i] - p) / size, _cross(back, b[i] - p) / size
     crossing = (np.abs(np.stack([high, other, low, far])) > tolerance).all(0) & (high * other < 0) & (low * far < 0)
     if crossing.any():
         k = np.flatnonzero(crossing)[0]
-        one, two = e.cell[i[k]], e.cell[j[k]]
+        one, two = sorted((e.cell[i[k]], e.cell[j[k]]))
         raise InputError(f"cell {one}: its border crosses itself" if one == two and not shift[k].any() else
                          f"cells {one} and {two} overlap")
 
@@ -253,9 +254,9 @@ def _check_walls(tissue: Tissue) -> None:
     limit = LONGEST_CUT * shortest_edges(tissue)[tissue.points[0]]
     wrong = np.flatnonzero((radii < 0) | (radii * TO_CUT >= limit) & (radii > 0))
     if len(wrong):
-        v = wrong[0]
-        raise InputError(f"corner_radius: {radii[v]:g} of vertex {v}: 0 to {limit[v] / TO_CUT:g} is wanted, so that the "
-                         "shortest edge there keeps its middle")
+        v = int(wrong[0])
+        raise InputError(f"corner_radius: {radii[v]:g} of vertex {v}: 0 to {limit[v] / TO_CUT:g} is wanted, so that "
+                         "the shortest edge there keeps its middle")
     try:
         thickness = tissue.thickness()
     except (ValueError, TypeError):
@@ -263,7 +264,7 @@ def _check_walls(tissue: Tissue) -> None:
     if thickness is None:
         return
     if len(thickness) != len(tissue.edges.cell):
-        raise InputError(f"wall_thickness: {len(tissue.wall_thickness)} entries for {len(tissue.cells)} cells")  # type: ignore
+        raise InputError(f"wall_thickness: entries for {len(tissue.cells)} cells are wanted, or a number")
     if not (thickness > 0).all():
         raise InputError(f"wall_thickness: of cell {tissue.edges.cell[np.argmin(thickness)]}: it must be positive")
     lumen = lumens(tissue, thickness)

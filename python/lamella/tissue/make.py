@@ -22,15 +22,15 @@ CLOSE = 0.015  #: error of the mean second moments for which no other sites are 
 AT_JUNCTIONS = 0.8  #: of the air that junctions could have, where cells are missing, too: room for the rest
 SETTLE = 8  #: steps of Lloyd's method after missing cells have got their areas
 ALMOST = 0.48  #: of a cell's perimeter may border spaces before short edges are merged, which changes faces a little
-SPACE = 1.4  #: area of a missing cell over the mean of the others: at 1 too many cells border two of them for a gas of 0.3
+SPACE = 1.4  #: area of a missing cell over the mean of the others: at 1 a gas of 0.3 has too many of them to be found
 ROUNDS = 12  #: of choosing: the areas of those chosen change their neighbours' faces
 
 
 @dataclass(frozen=True)
 class Asked:
     """What the tissue is to be. Lengths are in `unit`: size: diameter of a circle of the cells' mean area; variation:
-    standard deviation of the area over its mean; elongation: ratio of axes; direction: of the long one, degrees from X1;
-    aspect: width over height of the period; gas: air over the volume of the tissue."""
+    standard deviation of the area over its mean; elongation: ratio of axes; direction: of the long one, degrees from
+    X1; aspect: width over height of the period; gas: air over the volume of the tissue."""
     cells: int
     size: float
     unit: str = "um"
@@ -54,8 +54,8 @@ class Asked:
         if not abs(self.direction) <= 360:
             raise InputError(f"--direction: {self.direction:g} degrees: -360 to 360 are wanted")
         if self.wall_thickness is not None and not 0 < self.wall_thickness < 0.5 * self.size:
-            raise InputError(f"--wall-thickness {self.wall_thickness:g} {self.unit}: more than nothing and less than half "
-                             f"of the size is wanted")
+            raise InputError(f"--wall-thickness {self.wall_thickness:g} {self.unit}: more than nothing and less than "
+                             "half of the size is wanted")
 
     @property
     def area(self) -> float:
@@ -96,7 +96,7 @@ class _Plan:
         return np.full(self.missing, self.cells * self.share / (1 - self.share) / max(self.missing, 1))
 
 
-_Base: TypeAlias = tuple[Tissue, np.ndarray, np.ndarray]  # all cells, their areas over the mean, which are to be missing
+_Base: TypeAlias = tuple[Tissue, np.ndarray, np.ndarray]  # all cells, their areas over the mean, which shall be missing
 
 
 def _tissue(t: Tessellation, asked: Asked, period: np.ndarray) -> Tissue:
@@ -181,8 +181,8 @@ def _best(asked: Asked, plan: _Plan) -> tuple[Tissue, int]:
             return _finished(base, asked)
         except Failed as error:
             why.append(str(error))
-    raise InputError(f"no tissue of {asked.cells} cells found in {TRIES} trials: {why[-1]}; take thinner walls, less gas, "
-                     "less variation or more cells")
+    raise InputError(f"no tissue of {asked.cells} cells found in {TRIES} trials: {why[-1]}; take thinner walls, less "
+                     "gas, less variation or more cells")
 
 
 def make(asked: Asked) -> Tissue:

@@ -15,7 +15,8 @@ from scipy.sparse.linalg import spsolve
 from .. import Error
 from .file import Tissue
 
-SHORTEST = 0.15  #: of the mean edge: half of what four regular junctions leave of a Laguerre tessellation's edges is kept
+SHORTEST = 0.15  #: of the mean edge: 2 % of the edges are shorter (docs/reference/tissue.md); with less, walls are left
+#: that need fine meshes, with more, tissue loses its junctions of three cells
 ROUNDS = 50  #: of merging and moving; each merges at least one edge
 AREA = 1e-11  #: error of an area over the mean
 
@@ -25,8 +26,8 @@ class Failed(Error):
 
 
 class Complex:
-    """Points x [n, 2] and the corners of cells in a row [m], those of cell 0 first: cell, point, and shift [m, 2] of the
-    point in whole periods."""
+    """Points x [n, 2] and the corners of cells in a row [m], those of cell 0 first: cell, point, and shift [m, 2] of
+    the point in whole periods."""
 
     def __init__(self, tissue: Tissue) -> None:
         assert tissue.period is not None
@@ -74,7 +75,7 @@ class Complex:
     def merge(self, edges: np.ndarray) -> int:
         """Merges the ends of those edges that have no point or cell in common with one before them; their number."""
         to, by = np.arange(len(self.x)), np.zeros((len(self.x), 2), int)
-        points, cells, merged = set(), set(), 0
+        merged, points, cells = 0, set[int](), set[int]()
         twin = {(p, q): c for p, q, c in zip(self.point.tolist(), self.point[self.next].tolist(), self.cell.tolist())}
         x = self.corners()
         for e in edges:

@@ -1,19 +1,21 @@
 """What `lamella tissue` tells of the tissue that it has made."""
 import numpy as np
 
+from .file import Tissue
 
-def _row(label, text):
+
+def _row(label: str, text: str) -> str:
     return f"{label:12s} {text}"
 
 
-def _of(asked, got):
+def _of(asked: str, got: str) -> str:
     return f"{got}, asked for {asked}"
 
 
-def table(tissue):
+def table(tissue: Tissue) -> list[str]:
     """Lines: what was asked, and what the tissue is."""
     asked, got = tissue.made_by["asked"], tissue.made_by["got"]
-    unit, (a, b) = tissue.unit, tissue.period
+    unit, (a, b) = tissue.unit, np.array(got["period"])
     mean = got["area_mean"]
     size, apothem = np.sqrt(4 * mean / np.pi), np.sqrt(mean / (2 * np.sqrt(3)))
     lines = [
@@ -28,8 +30,8 @@ def table(tissue):
              f": {got['porosity_junctions']:.4f} at junctions, {got['porosity_spaces']:.4f} of "
              f"{got['cells_missing']} missing cells")]
     if got["corner_radius"] > 0:
-        lines.append(_row("corners", f"radius {got['corner_radius']:.4g} {unit}, less at {100 * got['corners_limited']:.0f} % "
-                                     "of the vertices, whose edges are short"))
+        lines.append(_row("corners", f"radius {got['corner_radius']:.4g} {unit}, less at "
+                          f"{100 * got['corners_limited']:.0f} % of the vertices, whose edges are short"))
     lines += [
         _row("shape", f"4 pi A/P^2 {got['shape_factor']:.3f}, standard deviation {got['shape_factor_deviation']:.3f}"),
         _row("neighbours", f"{got['neighbours']:.3f} of a cell; cells with " +
@@ -38,6 +40,7 @@ def table(tissue):
                       f"{got['edges_merged']} shorter ones merged into points"),
         _row("angles", f"smallest {got['angle_smallest']:.1f} deg")]
     if "wall_share" in got:
-        lines.append(_row("walls", f"{100 * got['wall_share']:.1f} % of the volume, lumens {100 * got['lumen_share']:.1f} %"))
+        lines.append(_row("walls", f"{100 * got['wall_share']:.1f} % of the volume, lumens "
+                          f"{100 * got['lumen_share']:.1f} %"))
     return lines
 

@@ -32,8 +32,8 @@ class Contacts:
         self.length, self.perimeter = length[shared], np.bincount(e.cell, length)
 
     def hold(self, missing: np.ndarray, most: float = MOST_AIR) -> bool:
-        """Whether the cells that are not missing (booleans) have faces with others along enough of their perimeters, and
-        hang together, over the period in both directions."""
+        """Whether the cells that are not missing (booleans) have faces with others along enough of their perimeters,
+        and hang together, over the period in both directions."""
         kept = ~missing
         inside = kept[self.cell] & kept[self.other]
         cell, other, shift = self.cell[inside], self.other[inside], self.shift[inside]
@@ -56,9 +56,9 @@ class Contacts:
 
 
 def choose(tissue: Tissue, count: int, before: np.ndarray, order: np.ndarray) -> np.ndarray:
-    """Which cells can be missing (booleans), as many as count. before: those that shall be (booleans), if they still can;
-    order [cells]: the others are the first possible ones of it, at first those by which no cell loses much. Failed: too
-    few can be."""
+    """Which cells can be missing (booleans), as many as count. before: those that shall be (booleans), if they still
+    can; order [cells]: the others are the first possible ones of it, at first those by which no cell loses much.
+    Failed: too few can be."""
     contacts = Contacts(tissue)
     first = np.searchsorted(contacts.cell, np.arange(contacts.count + 1))
     air, missing = np.zeros(contacts.count), np.zeros(contacts.count, bool)

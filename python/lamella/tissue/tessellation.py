@@ -17,7 +17,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from .. import Error
 
-MARGIN = 3.5  #: sides of mean cells around the period in which images of sites are taken first; what it lacks is noticed
+MARGIN = 3.5  #: sides of mean cells around the period, where images of sites are taken first; what lacks is noticed
 LOOSE, TIGHT = 1e-2, 1e-11  #: errors of areas, over the mean: while sites move, and in the end
 VORONOI, LLOYD = 10, 20  #: steps of Lloyd's method with equal weights, which spreads sites fast, and with given areas
 
