@@ -12,6 +12,7 @@ from .tissue import FADE, LUMEN, Key, View, faded
 WALL, AIR = "#8a9a5b", "white"
 AROUND = 0.12  #: of the period: what is seen around it
 LINE = 0.6  #: points at most: of the outlines of cells
+SWATCH = 45  #: points that a colour and its word take
 ARC = 9  #: points of a corner's arc
 CLASS = 0.65  #: share of white in the colours of classes of cells
 
@@ -122,8 +123,12 @@ def _swatches(key, cells):
     parts = [("wall", WALL)] if cells.thickness is not None else []
     parts += [("cell" if cells.thickness is None else "lumen", LUMEN)] if 0 in cells.lumens else []
     parts += [(f"class {k}", _colour(k)) for k in cells.lumens if k]
-    parts += [("air", AIR)] if (cells.tissue.edges.across < 0).any() or cells.tissue.radii().any() else []
+    is_open = cells.tissue.period is not None and (cells.tissue.edges.across < 0).any()
+    parts += [("air", AIR)] if is_open or cells.tissue.radii().any() else []
+    first = key.y
     for word, colour in parts:
+        if key.x + SWATCH > key.right and key.y == first:
+            key.row()
         key.axes.add_patch(Rectangle((key.x, key.y - 3), 9, 6, facecolor=colour, edgecolor=DARK, linewidth=0.4))
         key.x += 12
         key.x += key.text(word) + 8
@@ -152,6 +157,7 @@ def draw(path, options):
     key.scale_bar(view.scale / (unit * 1e6), "µm")
     _swatches(key, cells)
     if periodic:
-        key.row()
+        if key.y < height - 20:
+            key.row()
         key.undeformed("one period;  paler: the same cells again")
     return settle(page)
