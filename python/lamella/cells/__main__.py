@@ -16,6 +16,7 @@ from .walls import Walls
 
 USAGE, INPUT, IO, FAULT = 1, 2, 4, 70  # exit statuses (docs/reference/commands.md)
 UNIT, METRE = "um", 1e6  #: of the file
+JAGGED = 5  #: of the rms by which pixels differ from straight walls: hardly a pixel of thousands differs by more
 SHORTEST = 1.001 / 50  #: of the wall: the solver refuses shorter faces; more than it, also after the file's 12 digits
 
 
@@ -124,22 +125,30 @@ def convert(told: argparse.Namespace) -> tuple[Tissue, dict[str, Any]]:
     assert error is not None
     walls = Walls(picture, error)
     thickness = _thickness(told, walls, picture, pixel)
-    if len(thin := picture.thin(thickness, told.way == "mirror")):
-        picture.give_away(thin)
-        walls = Walls(picture, error)
-    length, number = walls.faces()
-    merged = walls.merge(max(told.merge * length / number, SHORTEST * thickness))
-    size, names = walls.top * pixel, picture.names[np.array(list(walls.around)) - 1]
-    seen, limited = borders.patch(walls, picture, pixel, thickness * pixel, UNIT)
-    tissue, source = seen, np.arange(len(seen.cells))
-    if told.way == "mirror":
-        tissue, source = borders.mirror(seen, size)
+    thin = picture.thin(thickness, told.way == "mirror")
+    while True:
+        if len(thin):
+            picture.give_away(thin)
+            walls = Walls(picture, error)
+        length, number = walls.faces()
+        merged = walls.merge(max(told.merge * length / number, SHORTEST * thickness))
+        size, cells = walls.top * pixel, np.array(list(walls.around))
+        seen, limited = borders.patch(walls, picture, pixel, thickness * pixel, UNIT)
+        tissue, source = borders.mirror(seen, size) if told.way == "mirror" else (seen, np.arange(len(cells)))
+        thin = np.unique(cells[source[borders.lumens(tissue) <= 0]])
+        if not len(thin):
+            break
+    names = picture.names[cells - 1]
     if told.way == "period":
         tissue, source, merged = borders.period(seen, picture, pixel, size)
     _check(tissue, names[source], thickness)
+    rms = float(np.sqrt((walls.deviations() ** 2).mean()))
+    if walls.bends() > len(names):
+        walls.told.append(f"{walls.bends()} bends: walls are curved; or they are jagged, then --error {JAGGED * rms:.2g} leaves "
+                          "only a few")
     report = {"as": told.way, "pixel": pixel, "pixel_from": where, "pixels": labels.shape[::-1],
               "gap": picture.gap * pixel, "deviation_largest": walls.deviations().max() * pixel,
-              "deviation_rms": np.sqrt((walls.deviations() ** 2).mean()) * pixel, "faces_merged": merged,
+              "deviation_rms": rms * pixel, "faces_merged": merged,
               "edges_without_lumen": borders.without_lumen(tissue), "bends": walls.bends(),
               "pockets": len(picture.pockets), "pockets_limited": limited, "wall_thickness": thickness * pixel,
               "told": picture.told + walls.told}

@@ -144,6 +144,13 @@ def period(tissue: Tissue, picture: Picture, pixel: float, size: np.ndarray) -> 
 
 # ---- how well it fits ----
 
+def lumens(tissue: Tissue) -> np.ndarray:
+    """Areas of the lumens [cells]; walls that are too thick leave none, or less."""
+    thickness = tissue.thickness()
+    assert thickness is not None
+    return geometry.lumens(tissue, thickness)
+
+
 def without_lumen(tissue: Tissue) -> int:
     """Number of edges of cells that are too short for the wall: nothing is left of them on the lumen's side, where a
     wall of the thickness t takes t cot(A/2) at an end with the interior angle A."""

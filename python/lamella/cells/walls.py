@@ -20,10 +20,11 @@ from .picture import Picture, few
 OUTSIDE = -1
 HOLD = 1e-2  #: weight of a vertex' first place, in cracks: where walls that are in line leave it free
 HOLD_BEND = 1.0  #: likewise of a bend, which may slide along faces that are almost in line
-HELD = 10.0  #: likewise of faces that the fit would turn round, shorter than a pixel: they stay as they are seen
+HELD, FIXED = 10.0, 1e4  #: likewise of short faces that the fit would turn, and more, until they stay as they are seen
 AREA = 10.0  #: weight of areas, as a shift of their borders, over that of cracks: a hundredth of their misfit is left
 CORNER = 1.0  #: pixels by which a corner of pixels may be off its junction
-SETTLED = 1e-3  #: pixels
+BENDING, SETTLING = 4, 30  #: steps of a fit that shows where bends are wanted; at most, until it is settled
+SETTLED = 1e-2  #: pixels
 ENDS = 2  #: cracks at the ends of a curve, where junctions are rounded by pixels, that make no bend
 
 
@@ -220,12 +221,12 @@ class Walls:
         return coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
                           shape=(len(residual), self.x.size)), np.array(residual)
 
-    def _fit(self) -> None:
+    def _fit(self, steps: int = SETTLING) -> None:
         """Vertices on the picture's border stay on it."""
         ends = self._points()
         free = np.flatnonzero(((self.first > 0) & (self.first < self.top)).ravel())
         hold = np.repeat(self.hold, 2)
-        for _ in range(30):
+        for _ in range(steps):
             matrix, force = identity(self.x.size).multiply(hold[:, None]).tocsr(), hold * (self.first - self.x).ravel()
             for rows, residual in (self._rows(ends), self._areas()):
                 rows = rows.tocsr()
@@ -251,23 +252,28 @@ class Walls:
         while self._bend_all(self.error + CORNER):
             pass
         self.first, self.hold = self.x.copy(), np.where(np.arange(len(self.x)) < self.junctions, HOLD, HOLD_BEND)
+        steps = BENDING
         while True:
-            self._fit()
+            self._fit(steps)
             before = len(self.x)
             bent = self._bend_all(self.error)
             self.first = np.vstack([self.first, self.x[before:]])
             self.hold = np.append(self.hold, np.full(len(self.x) - before, HOLD_BEND))
-            turned = [v for v in self._turned() if self.hold[v] < HELD]
-            self.hold[turned] = HELD
-            if not bent and not turned:
+            turned = self._turned()
+            turned = turned[self.hold[turned] < FIXED]
+            self.hold[turned] = np.maximum(10 * self.hold[turned], HELD)
+            if steps == SETTLING and not bent and not len(turned):
                 return
+            steps = BENDING if bent or len(turned) else SETTLING
 
-    def _turned(self) -> list[int]:
-        """Vertices of faces that point elsewhere than they did."""
+    def _turned(self) -> np.ndarray:
+        """Vertices of faces whose direction is more than 60 degrees off: where junctions are near each other, walls would
+        cross."""
         a = np.concatenate([c.nodes[:-1] for c in self.curves]).astype(int)
         b = np.concatenate([c.nodes[1:] for c in self.curves]).astype(int)
-        wrong = ((self.x[b] - self.x[a]) * (self.first[b] - self.first[a])).sum(1) <= 0
-        return np.unique(np.concatenate([a[wrong], b[wrong]])).tolist()
+        now, before = self.x[b] - self.x[a], self.first[b] - self.first[a]
+        wrong = (now * before).sum(1) <= 0.5 * np.hypot(*now.T) * np.hypot(*before.T)
+        return np.unique(np.concatenate([a[wrong], b[wrong]]))
 
     # ---- what it is ----
 
