@@ -149,6 +149,7 @@ for way in ("patch", "mirror", "period"):
 
 # a round pocket of air at each of two junctions becomes a rounded corner of its area
 tissue, _ = run(labels, pixel, *wall)
+count = len(tissue.cells)
 shortest = geometry.shortest_edges(tissue)[tissue.points[0]] / pixel
 meeting = np.bincount(np.concatenate(tissue.cells)) == 3
 chosen = np.flatnonzero(meeting & (shortest > 17))[:2]
@@ -162,11 +163,11 @@ assert np.isclose(told["fit"]["porosity"], air.mean(), rtol=0.01), (told["fit"][
 
 # waves of 4 pixels: bends of two cells, as far from the pixels as the error admits, areas as they are
 y, x = np.indices(labels.shape)
-waves = ndimage.map_coordinates(labels, [y + 4 * np.sin(x / 11), x + 4 * np.sin(y / 11)], order=0, mode="nearest")
+waves = ndimage.map_coordinates(labels, [y + 4 * np.sin(x / 11), x + 4 * np.sin(y / 11)], order=0, mode="nearest")[:300, :300]
 for error in (1, 3):
     tissue, told = run(waves, pixel, *wall, "--error", str(error))
     assert told["fit"]["area_error_largest"] < 2e-3 and told["deviation_rms"] < 0.5 * error * pixel, told
-    assert (told["bends"] > 100) == (error == 1), told["bends"]
+    assert (told["bends"] > 30) == (error == 1), told["bends"]
 
 # a speck, a second piece, a hole, and a cell within a cell
 y, x = (int(v) for v in ndimage.center_of_mass(labels == 100))
@@ -178,7 +179,7 @@ tissue, told = run(other, pixel, *wall)
 for words in ("labels of several pieces: 100", "specks, smaller than 0.02 of the median cell, were taken out",
               "background within label 60 became part of it"):
     assert any(re.search(words, line) for line in told["told"]), (words, told["told"])
-assert 1000 not in tissue.made_by["labels"] and len(tissue.cells) == len(run(labels, pixel, *wall)[0].cells)
+assert 1000 not in tissue.made_by["labels"] and len(tissue.cells) == count
 PYTHON
 
 "$python" - <<'PYTHON' || fail "no pictures"

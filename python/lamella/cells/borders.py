@@ -191,7 +191,7 @@ def fit(tissue: Tissue, source: np.ndarray, seen: Tissue, walls: Walls, picture:
     return {"cells_whole": int(inner.sum()), "area_error_mean": float(error.mean()),
             "area_error_largest": float(np.abs(error).max()), "pairs": len(before), "pairs_kept": len(before & after),
             "pairs_new": len(after - before), "porosity_picture": picture.air,
-            "porosity": float((whole - got.sum() + rounded) / whole), "shape_factor_picture": float(shape[0]),
+            "porosity": round(float((whole - got.sum() + rounded) / whole), 12) + 0.0, "shape_factor_picture": float(shape[0]),
             "shape_factor": float(shape[1]), "elongation_picture": texture[0], "direction_picture": texture[1]}
 
 
