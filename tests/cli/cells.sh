@@ -1,5 +1,5 @@
-# Tissue files of label images, against the tessellation that the image shows: areas, neighbours, junctions, porosity; what
-# pictures lack is told in words.
+# Tissue files of label images, against the tessellation that the image shows: areas, neighbours, junctions, porosity; and
+# what pictures lack, told in words.
 . "$(dirname "$0")/common.sh"
 package scipy PIL
 
@@ -78,7 +78,7 @@ def period_apart(pair, tissue, cell_of, inside):
 PYTHON
 
 # docs/reference/cells.md: pixels of a diameter, line, displacement of borders, --error; largest and rms error of areas, %, and
-# rms of junctions, pixels; neighbours that may be lost. The largest error of all is 1.5 times that at 99 % of the junctions.
+# rms of junctions, pixels; neighbours that may be lost.
 "$python" - <<'PYTHON' || fail "errors of pictures"
 from truth import *
 for diameter, line, noise, error, largest, rms, junctions, losses in (
@@ -168,6 +168,12 @@ for error in (1, 3):
     tissue, told = run(waves, pixel, *wall, "--error", str(error))
     assert told["fit"]["area_error_largest"] < 2e-3 and told["deviation_rms"] < 0.5 * error * pixel, told
     assert (told["bends"] > 30) == (error == 1), told["bends"]
+
+# jagged borders: the error that is told leaves walls straight
+jagged = picture(60, 0, 1)[0][:250, :250]
+_, told = run(jagged, 1, "--wall-thickness", "1 um")
+error = re.search(r"jagged, then --error (\S+) ", " ".join(told["told"]))[1]
+assert run(jagged, 1, "--wall-thickness", "1 um", "--error", error)[1]["bends"] < 0.05 * told["bends"]
 
 # a speck, a second piece, a hole, and a cell within a cell
 y, x = (int(v) for v in ndimage.center_of_mass(labels == 100))

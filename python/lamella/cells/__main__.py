@@ -16,7 +16,8 @@ from .walls import Walls
 
 USAGE, INPUT, IO, FAULT = 1, 2, 4, 70  # exit statuses (docs/reference/commands.md)
 UNIT, METRE = "um", 1e6  #: of the file
-JAGGED = 5  #: of the rms by which pixels differ from straight walls: hardly a pixel of thousands differs by more
+JAGGED = 7  #: of the rms by which pixels differ from faces that follow their noise: 5 of the noise, which hardly one in
+#: thousands exceeds
 SHORTEST = 1.001 / 50  #: of the wall: the solver refuses shorter faces; more than it, also after the file's 12 digits
 
 
@@ -112,7 +113,7 @@ def _check(tissue: Tissue, names: np.ndarray, thickness: float) -> None:
         told = dict.fromkeys(int(names[int(k)]) for k in re.findall(r"\bcells? (\d+)", str(error)))
         if told:
             raise InputError(f"{error} (of label {' and '.join(map(str, told))}): join it with a neighbour in the "
-                             f"picture, or give thinner walls than {thickness:.3g} pixels or a smaller --error") from None
+                             f"picture, or give walls below {thickness:.3g} pixels or a smaller --error") from None
         raise
 
 
@@ -144,8 +145,8 @@ def convert(told: argparse.Namespace) -> tuple[Tissue, dict[str, Any]]:
     _check(tissue, names[source], thickness)
     rms = float(np.sqrt((walls.deviations() ** 2).mean()))
     if walls.bends() > len(names):
-        walls.told.append(f"{walls.bends()} bends: walls are curved; or they are jagged, then --error {JAGGED * rms:.2g} leaves "
-                          "only a few")
+        walls.told.append(f"{walls.bends()} bends: walls are curved; or they are jagged, then --error "
+                          f"{JAGGED * rms:.2g} leaves only a few")
     report = {"as": told.way, "pixel": pixel, "pixel_from": where, "pixels": labels.shape[::-1],
               "gap": picture.gap * pixel, "deviation_largest": walls.deviations().max() * pixel,
               "deviation_rms": rms * pixel, "faces_merged": merged,

@@ -27,12 +27,12 @@ def patch(walls: Walls, picture: Picture, pixel: float, thickness: float, unit: 
     cells = np.split(np.ravel(number), np.cumsum([len(p) for p in polygons])[:-1])
     for cell, label in zip(cells, walls.around):
         if len(set(cell.tolist())) < max(len(cell), 3):
-            raise InputError(f"label {picture.names[label - 1]}: merging leaves too little of the cell: give a smaller --merge")
+            raise InputError(f"label {picture.names[label - 1]}: too little is left by merging: a smaller --merge is wanted")
     tissue = Tissue(unit, None, walls.x[used] * pixel, cells, thickness)
     if not len(picture.pockets):
         return tissue, 0
     junctions, radii = Junctions(tissue), np.zeros(len(used))
-    air = np.bincount(tissue.edges.start, geometry.corner_air(tissue, geometry.angles(tissue)), len(used))  # over cut^2
+    air = np.bincount(tissue.edges.start, geometry.corner_air(geometry.angles(tissue)), len(used))  # over cut^2
     meeting = np.bincount(np.concatenate(cells)) > 2
     for x, y, area in picture.pockets * [pixel, pixel, pixel**2]:
         away = np.where(meeting, np.hypot(*(tissue.vertices - [x, y]).T), np.inf)
@@ -116,8 +116,8 @@ def period(tissue: Tissue, picture: Picture, pixel: float, size: np.ndarray) -> 
     that a cell which a border cuts counts once. Areas are those of whole cells; cut ones get quantiles of these, in the
     order of what is seen of them. Spaces are cells that are missing. Sites are the centroids, in the space where cells
     are round, and stay there: moved to the centroids of their own cells, as in tissue that is made of nothing, cells
-    become rounder than those of the picture, and fewer neighbours are kept. Number [cells] of the patch's cell that each
-    is; and number of short faces that became points."""
+    become rounder than those of the picture, and fewer neighbours are kept. Number [cells] of the patch's cell that
+    each is; and number of short faces that became points."""
     sides, (area, centroid, second) = outer_sides(tissue, size), geometry.moments(tissue)
     whole, kept = ~sides.any(1), np.flatnonzero(~sides[:, 2:].any(1))
     if whole.sum() < 4:
@@ -138,7 +138,7 @@ def period(tissue: Tissue, picture: Picture, pixel: float, size: np.ndarray) -> 
     vertices, cells = t.polygons()
     made = Tissue(tissue.unit, np.diag(size) * scale, unit * vertices @ stretch, cells, tissue.wall_thickness)
     made, merged = without_short_edges(made, wanted, float(tissue.wall_thickness))  # type: ignore[arg-type]
-    made = without(made, np.arange(len(kept), len(wanted))) if len(spaces) else made
+    made = without(made, np.arange(len(wanted)) >= len(kept)) if len(spaces) else made
     return made, kept, merged
 
 
@@ -184,14 +184,15 @@ def fit(tissue: Tissue, source: np.ndarray, seen: Tissue, walls: Walls, picture:
     before = {p for p in _neighbours(walls, labels) if numbers >= set(p)}
     after = {p for p in _pairs(tissue, source) if numbers >= set(p)}
     whole = np.prod(size) if tissue.period is None else np.linalg.det(tissue.period)
-    rounded = geometry.junction_air(tissue, tissue.radii() * TO_CUT)
+    rounded = geometry.junction_air(tissue)
     shape = [_shape(t)[cells].mean() for t, cells in ((seen, ~sides), (tissue, inner))]
     area, _, second = geometry.moments(seen)
     texture = geometry.texture(second[~sides], area[~sides]) if not sides.all() else (np.nan, np.nan)
     return {"cells_whole": int(inner.sum()), "area_error_mean": float(error.mean()),
             "area_error_largest": float(np.abs(error).max()), "pairs": len(before), "pairs_kept": len(before & after),
             "pairs_new": len(after - before), "porosity_picture": picture.air,
-            "porosity": round(float((whole - got.sum() + rounded) / whole), 12) + 0.0, "shape_factor_picture": float(shape[0]),
+            "porosity": round(float((whole - got.sum() + rounded) / whole), 12) + 0.0,
+            "shape_factor_picture": float(shape[0]),
             "shape_factor": float(shape[1]), "elongation_picture": texture[0], "direction_picture": texture[1]}
 
 

@@ -267,8 +267,8 @@ class Walls:
             steps = BENDING if bent or len(turned) else SETTLING
 
     def _turned(self) -> np.ndarray:
-        """Vertices of faces whose direction is more than 60 degrees off: where junctions are near each other, walls would
-        cross."""
+        """Vertices of faces whose direction is more than 60 degrees off: where junctions are near each other, walls
+        would cross."""
         a = np.concatenate([c.nodes[:-1] for c in self.curves]).astype(int)
         b = np.concatenate([c.nodes[1:] for c in self.curves]).astype(int)
         now, before = self.x[b] - self.x[a], self.first[b] - self.first[a]
