@@ -4,7 +4,7 @@
   0.25                /* part of its usual length or radius to which an inner contour may shrink: elements of a Q2     \
                          mesh then still have a quarter of their outer width */
 #define STRAIGHT 1e-2 /* radian: corners that turn less have no arc, and their mitre is the mean of both normals */
-#define SHARPEST 0.35 /* radian: 20 degrees between two faces; elements along narrower mitres degenerate */
+#define SHARPEST 0.175 /* radian: 10 degrees between two faces; elements along narrower mitres degenerate */
 #define PASSES 20     /* of thickening: each face that shrinks another one is met in the next pass */
 
 static PetscInt Next(const LamOutline *o, PetscInt k)
