@@ -69,8 +69,9 @@ static PetscErrorCode FactorConvex(Descent *d, PetscBool *ok)
 {
   const LamRVE rve = d->rve;
   const PetscReal diagonal = LamLargestDiagonal(rve->linear);
-  const PetscReal least = PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve));
   const PetscReal none = rve->contact ? LAM_PROXIMAL : 0.0;
+  /* more than none also where walls are so thin that their stiffness in bending is less */
+  const PetscReal least = PetscMax(PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve)), GROWTH * none);
 
   PetscFunctionBeginUser;
   d->shift = d->shift / DECAY < least ? none : d->shift / DECAY;
