@@ -4,8 +4,9 @@
   a period over its length.
 
   A straight crack at the height y separates the cells whose centres are above y from those below and so cuts the faces
-  between them; of the heights between the rows of cells that with the least energy is taken.
+  between them; of the heights just above the centre of a cell that with the least energy is taken.
 */
+#include <lamella/tissue.h>
 #include "tear.h"
 #include <math.h>
 
@@ -13,28 +14,8 @@
 #define ROUNDING 1e-9   /* apothems, radian */
 #define ABOVE 0.5       /* the centres of a row, apothems: rows are 1 or more apart */
 
-/* X1 and X2 of a lattice point. */
-static void Place(const LamMicrostructure *micro, PetscReal i, PetscReal j, PetscReal X[2])
-{
-  const PetscReal first = micro->orientation, second = first + PETSC_PI / 3.0;
-
-  X[0] = 2.0 * (i * cos(first) + j * cos(second));
-  X[1] = 2.0 * (i * sin(first) + j * sin(second));
-}
-
-/* X2 of a cell's centre. */
-static PetscReal HeightOf(const LamMicrostructure *micro, PetscInt cell)
-{
-  PetscInt index[2];
-  PetscReal X[2];
-
-  LamLatticeIndex(micro, cell, index);
-  Place(micro, (PetscReal)index[0], (PetscReal)index[1], X);
-  return X[1];
-}
-
 /* Length of the shortest period along X1; 0: there is none. */
-static PetscReal WidthOf(const LamMicrostructure *micro)
+static PetscReal WidthOf(LamTissue tissue)
 {
   PetscReal least = 0.0;
 
@@ -42,21 +23,44 @@ static PetscReal WidthOf(const LamMicrostructure *micro)
     for (PetscInt j = -MOST_PERIODS; j <= MOST_PERIODS; j++) {
       PetscReal X[2];
 
-      Place(micro, (PetscReal)(i * micro->cells[0]), (PetscReal)(j * micro->cells[1]), X);
+      for (int d = 0; d < 2; d++) X[d] = (PetscReal)i * tissue->period[0][d] + (PetscReal)j * tissue->period[1][d];
       if (fabs(X[1]) > ROUNDING || fabs(X[0]) < 1.0) continue;
       if (least == 0.0 || fabs(X[0]) < least) least = fabs(X[0]);
     }
   return least;
 }
 
-/* Energy of the lamella on a face, with that beside its corners. */
-static PetscReal FaceEnergy(const LamMicrostructure *micro, PetscInt cell, PetscInt face)
+/* X2 of a cell's centre. */
+static PetscReal HeightOf(LamTissue tissue, PetscInt cell)
+{
+  PetscReal X[2];
+
+  LamTissueCentre(tissue, cell, X);
+  return X[1];
+}
+
+/* X2 of the centre of the cell across a face, in its image. */
+static PetscReal HeightAcross(LamTissue tissue, PetscInt face)
+{
+  const PetscInt *wraps = tissue->wraps[face];
+
+  return HeightOf(tissue, tissue->cell[tissue->partner[face]]) + (PetscReal)wraps[0] * tissue->period[0][1] +
+         (PetscReal)wraps[1] * tissue->period[1][1];
+}
+
+/* Energy of the lamella on a face, with that beside its corners, where there is no air. */
+static PetscReal FaceEnergy(const LamMicrostructure *micro, LamTissue tissue, PetscInt face)
 {
   const LamLamella *lamella = &micro->lamella;
-  const PetscReal length = 2.0 / sqrt(3.0), junctions = PetscMin(length, 2.0 * lamella->junction_length);
-  PetscReal strength, energy = 0.0;
+  const PetscInt next = LamTissueNext(tissue, face), cell = tissue->cell[face];
+  const PetscReal *a = tissue->corner[face], *b = tissue->corner[next];
+  const PetscReal air[2] = {tissue->setback[face], tissue->setback[next]};
+  const PetscReal length = hypot(b[0] - a[0], b[1] - a[1]) - air[0] - air[1];
+  PetscReal strength, energy = 0.0, junctions = 0.0;
 
-  (void)LamLamellaFaceFactors(micro, cell, face, &strength, &energy);
+  for (int k = 0; k < 2; k++) junctions += PetscMax(0.0, lamella->junction_length - air[k]);
+  junctions = PetscMin(length, junctions);
+  (void)LamLamellaFaceFactors(micro, cell, face - tissue->first[cell], &strength, &energy);
   return lamella->energy * energy * (length - junctions + junctions * lamella->junction_energy);
 }
 
@@ -67,44 +71,55 @@ static PetscReal Passes(PetscReal from, PetscReal to, PetscReal y, PetscReal hei
 }
 
 /* Energy of a straight crack at the height y; *most: how often a face is cut. */
-static PetscReal EnergyAt(const LamMicrostructure *micro, const LamTearLayer *layer, PetscReal y, PetscReal *most)
+static PetscReal EnergyAt(const LamMicrostructure *micro, LamTissue tissue, const LamTearLayer *layer, PetscReal y,
+                          PetscReal *most)
 {
-  const PetscInt cells = micro->cells[0] * micro->cells[1];
   PetscReal sum = 0.0;
 
-  for (PetscInt cell = 0; cell < cells; cell++) {
-    const PetscReal from = HeightOf(micro, cell);
+  for (PetscInt face = 0; face < tissue->faces; face++) { /* each pair of cells once */
+    PetscReal cut;
 
-    for (PetscInt face = 0; face < LAM_FACES / 2; face++) { /* each pair of cells once */
-      const PetscReal up = 2.0 * sin(micro->orientation + PETSC_PI / 3.0 * (PetscReal)face);
-      const PetscReal cut = fabs(Passes(from, from + up, y, layer->height));
-
-      *most = PetscMax(*most, cut);
-      sum += cut * FaceEnergy(micro, cell, face);
-    }
+    if (!LamTissueIsSlave(tissue, face)) continue;
+    cut = fabs(Passes(HeightOf(tissue, tissue->cell[face]), HeightAcross(tissue, face), y, layer->height));
+    *most = PetscMax(*most, cut);
+    sum += cut * FaceEnergy(micro, tissue, face);
   }
   return sum / layer->width;
 }
 
-PetscErrorCode LamTearLayerOf(const char path[], const LamMicrostructure *micro, LamTearLayer *layer)
+/* The layer of a tissue, and how often a straight crack at some height cuts a face of it. */
+static PetscReal Layer(const LamMicrostructure *micro, LamTissue tissue, LamTearLayer *layer)
 {
-  const PetscInt cells = micro->cells[0] * micro->cells[1];
-  const PetscReal area = 2.0 * sqrt(3.0) * (PetscReal)cells;
   PetscReal most = 0.0;
 
+  *layer = (LamTearLayer){.width = WidthOf(tissue), .energy = INFINITY};
+  layer->height = tissue->area / layer->width;
+  for (PetscInt cell = 0; cell < tissue->cells && layer->width > 0.0; cell++) {
+    const PetscReal y = HeightOf(tissue, cell) + ABOVE;
+
+    layer->energy = PetscMin(layer->energy, EnergyAt(micro, tissue, layer, y, &most));
+  }
+  return most;
+}
+
+PetscErrorCode LamTearLayerOf(const char path[], const LamMicrostructure *micro, LamTearLayer *layer)
+{
+  const PetscReal turn = remainder(micro->orientation, PETSC_PI / 6.0);
+  LamTissue tissue;
+  PetscReal most;
+
   PetscFunctionBeginUser;
-  PetscCheck(fabs(remainder(micro->orientation, PETSC_PI / 6.0)) < ROUNDING, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  PetscCheck(micro->tissue || fabs(turn) < ROUNDING, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.cell.orientation: %.4g deg: no row of cells is along X1, so that no layer with the normal X2 "
              "repeats with the tissue; write a multiple of 30 deg",
              path, (double)(micro->orientation * 180.0 / PETSC_PI));
-  layer->width = WidthOf(micro);
-  layer->height = area / layer->width;
-  layer->energy = INFINITY;
-  for (PetscInt cell = 0; cell < cells && layer->width > 0.0; cell++) {
-    const PetscReal y = HeightOf(micro, cell) + ABOVE;
-
-    layer->energy = PetscMin(layer->energy, EnergyAt(micro, layer, y, &most));
-  }
+  PetscCall(LamTissueCreate(micro, &tissue));
+  most = Layer(micro, tissue, layer);
+  PetscCall(LamTissueDestroy(&tissue));
+  PetscCheck(!micro->tissue || layer->width > 0.0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.tissue: none of its periods is along X1, so that no layer with the normal X2 repeats with it; "
+             "take a tissue whose first period vector is along X1",
+             path);
   PetscCheck(layer->width > 0.0 && most < 1.5, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.cells: [%d, %d]: one period along X1 is a layer of less than a row of cells, each cut by several "
              "cracks; write cells: [2, 1]",
