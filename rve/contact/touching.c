@@ -325,25 +325,6 @@ static inline PetscInt Between(PetscInt spans, PetscInt i, PetscInt j)
   return PetscMin(d, spans - d);
 }
 
-/* Whether the normals of a point's own wall and of the one that it is near to are opposed. */
-static PetscBool AreOpposed(const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
-{
-  PetscReal y[2], tau[2], bend[2];
-
-  LamSplineAt(&own->curve, ((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, y, tau, bend);
-  return (PetscBool)(tau[1] * gap->normal[0] - tau[0] * gap->normal[1] < 0.0);
-}
-
-/* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
-   same cell. In another cell it may have come through from the opposite wall, or lie on the next wall around an acute
-   corner, and is then behind this one without having entered it: the normals are not opposed. */
-static PetscBool Counts(const Pair *p, const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
-{
-  if (!(gap->gap < p->width)) return PETSC_FALSE;
-  if (p->itself) return (PetscBool)(gap->gap >= -p->walls->thickness[p->other / 2]);
-  return (PetscBool)(gap->gap >= -p->width || (gap->gap >= -DEEPEST && AreOpposed(own, q, gap)));
-}
-
 /* Whether all of a box is farther outside a span than the width. */
 static inline PetscBool IsBeyond(const Pair *p, const LamWallSpan *span, const PetscReal low[2],
                                  const PetscReal high[2])
@@ -362,6 +343,38 @@ static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2]
   return (X[0] - a[0][0]) * a[1][0] + (X[1] - a[0][1]) * a[1][1];
 }
 
+/* Whether some other span of the loop is nearer to a point that lies at a depth behind span j: the point is behind that
+   span without having entered it, as on the next wall around an acute corner. */
+static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, PetscReal depth)
+{
+  const LamWalls *walls = p->walls;
+  const LamWallSpan *first = &walls->span[walls->first[p->other]];
+  const PetscInt n = LamWallsSpans(walls, p->other);
+  const LamBox near = {{X[0] - depth, X[1] - depth}, {X[0] + depth, X[1] + depth}};
+
+  for (PetscInt g = 0; g < GroupsOf(n); ++g) {
+    if (!Meet(&near, &walls->group[FirstGroup(walls, p->other) + g])) continue;
+    for (PetscInt k = GROUP * g; k < PetscMin(n, GROUP * (g + 1)); ++k) {
+      LamTouchGap gap;
+
+      if (k == j || walls->gone[walls->first[p->other] + k] || !Meet(&near, &first[k].box)) continue;
+      if (!(AlongStart(&first[k], X) > 0.0) || AlongStart(&first[k + 1 == n ? 0 : k + 1], X) > 0.0) continue;
+      LamTouchGapAt(&first[k].curve, X, LamSplineClosest(&first[k].curve, X), &gap);
+      if (PetscAbsReal(gap.gap) < depth) return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}
+
+/* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
+   same cell. In another cell it counts down to DEEPEST, where no other wall of that cell is nearer. */
+static PetscBool Counts(const Pair *p, const PetscReal X[2], PetscInt j, PetscReal gap)
+{
+  if (!(gap < p->width)) return PETSC_FALSE;
+  if (p->itself) return (PetscBool)(gap >= -p->walls->thickness[p->other / 2]);
+  return (PetscBool)(gap >= -p->width || (gap >= -DEEPEST && !IsNearer(p, X, j, -gap)));
+}
+
 /* Points of one span against one span of the other loop. */
 static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 {
@@ -375,7 +388,7 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 
     if (!(AlongStart(other, X) > 0.0) || AlongStart(next, X) > 0.0 || IsBeyond(p, other, X, X)) continue;
     LamTouchGapAt(&other->curve, X, LamSplineClosest(&other->curve, X), &touch.gap);
-    if (!Counts(p, own, q, &touch.gap)) continue;
+    if (!Counts(p, X, j, touch.gap.gap)) continue;
     touch.loop = p->loop;
     touch.span = i;
     touch.point = q;

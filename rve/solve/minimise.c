@@ -32,7 +32,10 @@
 #define WORTH_CORRECTING 0.2 /* least share of a step that is corrected */
 #define IDLE 8               /* iterations without progress after which the last digits are reached */
 #define PROGRESS 0.5
-#define FIRM 1e-3 /* largest residual of a state that is accepted after a shifted step */
+#define FULL_STEPS 3    /* from which on the least shift falls, ... */
+#define EASE 0.3        /* ... by this factor each, ... */
+#define LEAST_EASE 1e-4 /* ... to this one: there the proximal shift is near */
+#define FIRM 1e-3       /* largest residual of a state that is accepted after a shifted step */
 
 typedef struct {
   LamRVE rve;
@@ -45,6 +48,8 @@ typedef struct {
   PetscReal energy, rounding, slope; /* energy at the iterate, its rounding, slope along the step */
   PetscReal shift, last;             /* of this factor; the last one that was not zero */
   PetscReal largest, previous;       /* steps */
+  PetscReal ease;                    /* factor of the least shift */
+  PetscInt full;                     /* shifted steps since the last one that was shortened */
 } Descent;
 
 static PetscReal BorderWork(const LamBorder *border, PetscReal V0, const LamLoad *load)
@@ -71,7 +76,7 @@ static PetscErrorCode FactorConvex(Descent *d, PetscBool *ok)
   const PetscReal diagonal = LamLargestDiagonal(rve->linear);
   const PetscReal none = rve->contact ? LAM_PROXIMAL : 0.0;
   /* more than none also where walls are so thin that their stiffness in bending is less */
-  const PetscReal least = PetscMax(PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve)), GROWTH * none);
+  const PetscReal least = PetscMax(d->ease * PetscMin(LEAST_SHIFT * diagonal, LamBendingStiffness(rve)), GROWTH * none);
 
   PetscFunctionBeginUser;
   d->shift = d->shift / DECAY < least ? none : d->shift / DECAY;
@@ -202,10 +207,19 @@ static void SwitchTangent(LamLayer *layer, PetscReal alpha)
   layer->secant = (PetscBool)(!layer->secant && alpha < SHORT);
 }
 
+/* Where full steps are taken one after another the shift alone keeps them short: cells that nothing holds move far, at
+   hardly any stiffness. */
+static void AdaptShift(Descent *d, PetscReal alpha)
+{
+  d->full = d->shift > LAM_PROXIMAL && alpha == 1.0 ? d->full + 1 : 0;
+  if (d->full > FULL_STEPS) d->ease = PetscMax(EASE * d->ease, LEAST_EASE);
+  if (alpha < 0.5) d->ease = PetscMin(1.0, d->ease / EASE);
+}
+
 static PetscErrorCode Create(LamRVE rve, const LamLoad *load, LamBorder *border, Descent *d)
 {
   PetscFunctionBeginUser;
-  *d = (Descent){.rve = rve, .border = border, .load = load, .previous = PETSC_INFINITY};
+  *d = (Descent){.rve = rve, .border = border, .load = load, .previous = PETSC_INFINITY, .ease = 1.0};
   d->rounding = 1e-14 * rve->stiffest * rve->mesh.V0;
   if (border) border->descend = PETSC_TRUE;
   PetscCall(PetscMalloc5(rve->length, &d->y, rve->length, &d->step, rve->mesh.element_count, &d->stress, rve->linear->n,
@@ -259,6 +273,7 @@ PetscErrorCode LamMinimise(LamRVE rve, const LamLoad *load, LamBorder *border, P
       *outcome = LAM_NEWTON_CONVERGED;
     if (*outcome == LAM_NEWTON_CONVERGED) break;
     PetscCall(Search(&d, &alpha));
+    AdaptShift(&d, alpha);
     if (rve->layer) SwitchTangent(rve->layer, alpha);
     if (alpha == 0.0) {
       if (-d.slope <= d.rounding && norm <= LAM_ROUNDING_MARGIN * tolerance) *outcome = LAM_NEWTON_CONVERGED;
