@@ -60,6 +60,8 @@ typedef struct {
   PetscReal lamella_strength, lamella_energy; /* factors of the lamella's; between two cells the smaller ones act */
   PetscInt cluster;                           /* of cells that hold together (LamLamella, between) */
 } LamCell;
+/* Whether two cells are the same, to a relative tolerance. */
+LAM_EXPORT PetscBool LamCellsAgree(const LamCell *a, const LamCell *b, PetscReal tolerance);
 
 typedef struct LamTissue_s *LamTissue; /* cells of any shape (tissue.h) */
 

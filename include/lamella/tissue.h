@@ -37,6 +37,8 @@ LAM_EXPORT PetscErrorCode LamTissueDestroy(LamTissue *tissue);
 /* Allocates all arrays, zero; partners are -1 and shares 1. */
 LAM_EXPORT PetscErrorCode LamTissueAllocate(PetscInt cells, PetscInt faces, LamTissue *tissue);
 LAM_EXPORT PetscErrorCode LamTissueCopy(LamTissue from, LamTissue *to);
+/* Whether two tissues are the same, face by face, to a tolerance in apothems. Both NULL: yes. */
+LAM_EXPORT PetscBool LamTissuesAgree(LamTissue a, LamTissue b, PetscReal tolerance);
 
 /* Mean of the corners of a cell. */
 LAM_EXPORT void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centre[2]);
@@ -44,6 +46,19 @@ LAM_EXPORT void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centr
 LAM_EXPORT PetscInt LamCellFaces(const LamMicrostructure *micro, PetscInt cell);
 LAM_EXPORT PetscInt LamCellAcross(const LamMicrostructure *micro, PetscInt cell, PetscInt k);
 LAM_EXPORT PetscInt LamCellDirection(const LamMicrostructure *micro, PetscInt cell, PetscInt k);
+
+/*
+  The motions that map a periodic tissue, with all that its cells have, onto itself, within 1e-9 apothems: has[0][k],
+  rotations by 60 k degrees; has[1][k], a mirror at the line along face normal 0, and then that rotation. A patch has
+  the identity alone.
+*/
+typedef struct {
+  PetscBool has[2][LAM_DIRECTIONS];
+} LamSymmetry;
+LAM_EXPORT PetscErrorCode LamMicrostructureSymmetry(const LamMicrostructure *micro, LamSymmetry *symmetry);
+/* Half a turn does not change a strain: whether the motion (turn < 3) is one of strains, and whether all six are. */
+LAM_EXPORT PetscBool LamSymmetryOfStrain(const LamSymmetry *symmetry, PetscBool mirror, PetscInt turn);
+LAM_EXPORT PetscBool LamSymmetryIsHexagonal(const LamSymmetry *symmetry);
 
 /* The face behind and before a face of the same cell. */
 static inline PetscInt LamTissueNext(LamTissue tissue, PetscInt face)

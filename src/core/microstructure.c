@@ -197,6 +197,28 @@ PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
+static PetscBool AreEqual(PetscReal a, PetscReal b, PetscReal tolerance)
+{
+  return (PetscBool)(fabs(a - b) <= tolerance * fabs(b));
+}
+
+static PetscBool AreSameWalls(const LamWall *a, const LamWall *b, PetscReal tolerance)
+{
+  if (a->law != b->law || !AreEqual(a->bulk_modulus, b->bulk_modulus, tolerance)) return PETSC_FALSE;
+  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
+    if (!AreEqual(LamWallGet(a, k), LamWallGet(b, k), tolerance)) return PETSC_FALSE;
+  return (PetscBool)(!LamWallLawHasFibres(a->law) || a->fibres == b->fibres);
+}
+
+PetscBool LamCellsAgree(const LamCell *a, const LamCell *b, PetscReal tolerance)
+{
+  return (PetscBool)(AreEqual(a->wall_thickness, b->wall_thickness, tolerance) &&
+                     AreEqual(a->turgor, b->turgor, tolerance) && AreEqual(a->cohesion, b->cohesion, tolerance) &&
+                     AreEqual(a->lamella_strength, b->lamella_strength, tolerance) &&
+                     AreEqual(a->lamella_energy, b->lamella_energy, tolerance) && a->cluster == b->cluster &&
+                     AreSameWalls(&a->wall, &b->wall, tolerance));
+}
+
 /* Index of `text` in a list of names; -1: not found. */
 static int Find(int count, const char *const names[], const char text[])
 {

@@ -50,6 +50,24 @@ PetscErrorCode LamTissueCopy(LamTissue from, LamTissue *to)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamTissuesAgree(LamTissue a, LamTissue b, PetscReal tolerance)
+{
+  PetscReal off = 0.0;
+
+  if (!a || !b) return (PetscBool)(a == b);
+  if (a->cells != b->cells || a->faces != b->faces) return PETSC_FALSE;
+  for (PetscInt k = 0; k < 4; k++) off = PetscMax(off, PetscAbsReal(a->period[k / 2][k % 2] - b->period[k / 2][k % 2]));
+  for (PetscInt k = 0; k < a->faces; k++) {
+    if (a->cell[k] != b->cell[k] || a->partner[k] != b->partner[k] || a->direction[k] != b->direction[k] ||
+        a->held[k] != b->held[k])
+      return PETSC_FALSE;
+    for (int d = 0; d < 2; d++) off = PetscMax(off, PetscAbsReal(a->corner[k][d] - b->corner[k][d]));
+    off = PetscMax(off, PetscAbsReal(a->share[k] - b->share[k]));
+    off = PetscMax(off, PetscAbsReal(a->setback[k] - b->setback[k]));
+  }
+  return (PetscBool)(off <= tolerance);
+}
+
 /* ---- hexagons ---- */
 
 /* L_k for k = 0, 1. */

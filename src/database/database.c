@@ -68,7 +68,7 @@ static PetscErrorCode Load(const char path[], hid_t file, void *ctx)
   PetscCall(LamHeaderRead(path, file, &db->header));
   if (loading->later) PetscCall(MakeLater(path, db->header.committed, loading->later));
   PetscCall(PetscStrallocpy(path, &db->path));
-  LamImagesMake(&db->header.micro, &db->images);
+  PetscCall(LamImagesMake(&db->header.micro, &db->images));
   PetscCall(LamGrow(db->n, db->header.committed, sizeof(*db->keys), &db->capacity, &db->keys));
   PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadRecord, ctx));
   db->records_first = db->n;
@@ -131,7 +131,7 @@ PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *databa
   PetscCall(PetscStrallocpy("database", &db->header.kind));
   PetscCall(PetscMalloc1(LAM_HASH_LENGTH, &db->header.hash));
   PetscCall(LamMicrostructureDescribe(&scene->micro, &db->header.description, db->header.hash));
-  LamImagesMake(&scene->micro, &db->images);
+  PetscCall(LamImagesMake(&scene->micro, &db->images));
   *database = db;
   PetscFunctionReturn(0);
 }

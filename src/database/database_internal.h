@@ -10,7 +10,7 @@
 
 #define LAM_MAX_IMAGES 6
 
-/* The rotations and mirrors that map the lattice to itself, acting on (c1, c2); image 0 is the identity. */
+/* The rotations and mirrors that map the tissue to itself, acting on (c1, c2); image 0 is the identity. */
 typedef struct {
   PetscInt count;
   PetscReal map[LAM_MAX_IMAGES][2][2];
@@ -80,7 +80,7 @@ static inline PetscErrorCode LamGrow(PetscInt count, PetscInt n, size_t size, Pe
 }
 
 /* ---- images.c ---- */
-void LamImagesMake(const LamMicrostructure *micro, LamImages *images);
+PetscErrorCode LamImagesMake(const LamMicrostructure *micro, LamImages *images);
 /* y = M x: the query in the records' frame. */
 void LamImagesForward(const LamImages *images, PetscInt image, const PetscReal x[LAM_VARIABLES],
                       PetscReal y[LAM_VARIABLES]);

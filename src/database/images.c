@@ -1,28 +1,37 @@
 /*
-  The symmetry of the lattice: rotated and mirrored loads with equivalent responses.
+  The symmetry of the tissue: rotated and mirrored loads with equivalent responses.
 */
 #include "database_internal.h"
+#include <lamella/tissue.h>
 #include <math.h>
 
-void LamImagesMake(const LamMicrostructure *micro, LamImages *images)
+/* A mirror at face normal 0, then a rotation by 60 degrees * turn; c1 + i c2 rotates by the doubled angle. */
+static void AddImage(const LamMicrostructure *micro, PetscBool mirror, PetscInt turn, LamImages *images)
 {
-  const PetscBool hexagonal = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->is_patch && !micro->cell);
+  const PetscReal angle = 2 * PETSC_PI / 3 * (PetscReal)turn + (mirror ? 4 * micro->orientation : 0);
+  const PetscReal c = cos(angle), s = sin(angle), sign = mirror ? -1 : 1;
+  const PetscInt i = images->count++;
 
-  /* unequal counts leave only the half turn, which does not change C; differing cells leave no symmetry */
-  images->count = hexagonal ? LAM_MAX_IMAGES : 1;
-  for (PetscInt i = 0; i < images->count; i++) {
-    const PetscInt turn = i % 3;
+  images->map[i][0][0] = c;
+  images->map[i][0][1] = -sign * s;
+  images->map[i][1][0] = s;
+  images->map[i][1][1] = sign * c;
+  for (PetscInt k = 0; k < 3; k++) images->face[i][k] = ((mirror ? 3 - k : k) + turn) % 3;
+}
+
+PetscErrorCode LamImagesMake(const LamMicrostructure *micro, LamImages *images)
+{
+  LamSymmetry symmetry;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamMicrostructureSymmetry(micro, &symmetry));
+  images->count = 0;
+  for (int i = 0; i < LAM_MAX_IMAGES; i++) {
     const PetscBool mirror = (PetscBool)(i >= 3);
-    /* mirror at face normal 0, then rotate by 60 degrees * turn; c1 + i c2 rotates by the doubled angle */
-    const PetscReal angle = 2 * PETSC_PI / 3 * turn + (mirror ? 4 * micro->orientation : 0);
-    const PetscReal c = cos(angle), s = sin(angle), sign = mirror ? -1 : 1;
 
-    images->map[i][0][0] = c;
-    images->map[i][0][1] = -sign * s;
-    images->map[i][1][0] = s;
-    images->map[i][1][1] = sign * c;
-    for (PetscInt k = 0; k < 3; k++) images->face[i][k] = ((mirror ? 3 - k : k) + turn) % 3;
+    if (LamSymmetryOfStrain(&symmetry, mirror, i % 3)) AddImage(micro, mirror, i % 3, images);
   }
+  PetscFunctionReturn(0);
 }
 
 void LamImagesForward(const LamImages *images, PetscInt image, const PetscReal x[LAM_VARIABLES],

@@ -1,5 +1,6 @@
 #include <lamella/parametric_database.h>
 #include <lamella/blend.h>
+#include <lamella/tissue.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +48,8 @@ static PetscBool SameOtherwise(const LamMicrostructure *a, const LamMicrostructu
   return (PetscBool)(!a->cell && !b->cell && a->is_patch == b->is_patch && a->cells[0] == b->cells[0] &&
                      a->cells[1] == b->cells[1] && a->interface == b->interface && a->wall.law == b->wall.law &&
                      a->wall.fibres == b->wall.fibres && Same(a->wall.bulk_modulus, b->wall.bulk_modulus) &&
-                     Same(a->clearance, b->clearance) && Same(1 + a->orientation, 1 + b->orientation));
+                     Same(a->clearance, b->clearance) && Same(1 + a->orientation, 1 + b->orientation) &&
+                     LamTissuesAgree(a->tissue, b->tissue, SAME));
 }
 
 static PetscErrorCode FindAxis(PetscInt n, const LamDatabase databases[], LamParametricAxis *axis)

@@ -312,28 +312,6 @@ static PetscErrorCode BuildField(const LamNode *node, LamScene *scene)
 
 /* ---- variation ---- */
 
-/* Equal up to rounding of unit conversion. */
-static PetscBool AreEqual(PetscReal a, PetscReal b)
-{
-  return (PetscBool)(fabs(a - b) <= 1e-12 * fabs(b));
-}
-
-static PetscBool AreSameWalls(const LamWall *a, const LamWall *b)
-{
-  if (a->law != b->law || !AreEqual(a->bulk_modulus, b->bulk_modulus)) return PETSC_FALSE;
-  for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
-    if (!AreEqual(LamWallGet(a, k), LamWallGet(b, k))) return PETSC_FALSE;
-  return (PetscBool)(!LamWallLawHasFibres(a->law) || a->fibres == b->fibres);
-}
-
-static PetscBool AreSame(const LamCell *a, const LamCell *b)
-{
-  return (PetscBool)(AreEqual(a->wall_thickness, b->wall_thickness) && AreEqual(a->turgor, b->turgor) &&
-                     AreEqual(a->cohesion, b->cohesion) && AreEqual(a->lamella_strength, b->lamella_strength) &&
-                     AreEqual(a->lamella_energy, b->lamella_energy) && a->cluster == b->cluster &&
-                     AreSameWalls(&a->wall, &b->wall));
-}
-
 /* Removes a variation in which all cells equal the scene's own. */
 static PetscErrorCode DropVariation(LamMicrostructure *micro)
 {
@@ -341,7 +319,7 @@ static PetscErrorCode DropVariation(LamMicrostructure *micro)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++) {
-    if (!AreSame(&micro->cell[c], &own)) PetscFunctionReturn(0);
+    if (!LamCellsAgree(&micro->cell[c], &own, 1e-12)) PetscFunctionReturn(0); /* rounding of unit conversion */
   }
   PetscCall(PetscFree(micro->cell));
   PetscFunctionReturn(0);

@@ -11,10 +11,12 @@
 /*
   State number `index` (0, 1, ...) of the scene's sample box: point index + 1 of the Halton sequence with bases
   2, 3, 5, 7 for two principal logarithmic strains, the angle between the first principal direction and face normal 0,
-  and turgor. F is the right stretch U. The angle ranges over 30 degrees with six-fold symmetry, else over 90.
+  and turgor. F is the right stretch U. The angle ranges over `wedge`, radian.
   Source: J. H. Halton, Numer. Math. 2 (1960) 84-90.
 */
-void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load);
+void LamSampleLoad(const LamScene *scene, PetscReal wedge, PetscInt64 index, LamLoad *load);
+/* The angle that covers the box: 30 degrees with all motions of a hexagon, else 90, as either stretch comes first. */
+PetscErrorCode LamSampleWedge(const LamMicrostructure *micro, PetscReal *wedge);
 
 /*
   One part of the sample box, for databases that are built separately and merged. Shards are boxes with nearly equal

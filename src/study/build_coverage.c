@@ -104,7 +104,7 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
                                   LamMeanwhile meanwhile, LamCoverage *coverage)
 {
   const PetscBool contact = LamCellsPart(scene->micro.interface);
-  PetscReal *errors, error;
+  PetscReal *errors, error, wedge;
   PetscInt *states, n = 0;
   LamTable table;
   Need *needs;
@@ -112,13 +112,14 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
   PetscFunctionBeginUser;
   *coverage = (LamCoverage){0};
   PetscCall(LamShardStates(scene, shard, contact ? CONTACT_STATES : BONDED_STATES, &coverage->states, &states));
+  PetscCall(LamSampleWedge(&scene->micro, &wedge));
   PetscCall(LamDatabaseGetTable(database, &table));
   PetscCall(PetscMalloc2(coverage->states, &errors, coverage->states, &needs));
   for (PetscInt i = 0; i < coverage->states; i++) {
     LamLoad load;
 
     if (meanwhile.call && i % BETWEEN_LOOKS == 0) PetscCall(meanwhile.call(meanwhile.ctx));
-    LamSampleLoad(scene, states[i], &load);
+    LamSampleLoad(scene, wedge, states[i], &load);
     needs[n].n = 0;
     needs[n].states = 1;
     PetscCall(QueryState(table, &load, accuracy, coverage, &needs[n], &error));

@@ -8,6 +8,7 @@
     nodes.
 */
 #include "build.h"
+#include <lamella/tissue.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -28,11 +29,21 @@ static PetscReal Between(PetscReal min, PetscReal max, PetscReal share)
   return min + (max - min) * share;
 }
 
-void LamSampleLoad(const LamScene *scene, PetscInt64 index, LamLoad *load)
+PetscErrorCode LamSampleWedge(const LamMicrostructure *micro, PetscReal *wedge)
+{
+  LamSymmetry symmetry;
+
+  PetscFunctionBeginUser;
+  *wedge = PETSC_PI / 2;
+  PetscCall(LamMicrostructureSymmetry(micro, &symmetry));
+  if (LamSymmetryIsHexagonal(&symmetry)) *wedge = PETSC_PI / 6;
+  PetscFunctionReturn(0);
+}
+
+void LamSampleLoad(const LamScene *scene, PetscReal wedge, PetscInt64 index, LamLoad *load)
 {
   const LamSample *box = &scene->sample;
   const LamMicrostructure *micro = &scene->micro;
-  const PetscReal wedge = micro->cells[0] == micro->cells[1] && !micro->cell ? PETSC_PI / 6 : PETSC_PI / 2;
   const PetscReal first = Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 2));
   const PetscReal second = Between(box->stretch_min, box->stretch_max, RadicalInverse(index + 1, 3));
   const PetscReal angle = micro->orientation + wedge * RadicalInverse(index + 1, 5);
@@ -101,13 +112,13 @@ static int CompareNumbers(const void *a, const void *b)
 }
 
 /* Turgor is scaled so that its range equals the strain range of the box. */
-static State StateOf(const LamScene *scene, PetscInt number)
+static State StateOf(const LamScene *scene, PetscReal wedge, PetscInt number)
 {
   const LamSample *box = &scene->sample;
   const PetscReal range = box->turgor_max - box->turgor_min, strain = box->stretch_max - box->stretch_min;
   LamLoad load;
 
-  LamSampleLoad(scene, number, &load);
+  LamSampleLoad(scene, wedge, number, &load);
   return (State){
       number, {load.F[0], load.F[4], load.F[1], range > 0 ? strain * (load.turgor - box->turgor_min) / range : 0}, 0};
 }
@@ -115,11 +126,13 @@ static State StateOf(const LamScene *scene, PetscInt number)
 PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, PetscInt asked, PetscInt *n,
                               PetscInt **states)
 {
+  PetscReal wedge;
   State *all;
 
   PetscFunctionBeginUser;
+  PetscCall(LamSampleWedge(&scene->micro, &wedge));
   PetscCall(PetscMalloc1(asked, &all));
-  for (PetscInt i = 0; i < asked; i++) all[i] = StateOf(scene, i);
+  for (PetscInt i = 0; i < asked; i++) all[i] = StateOf(scene, wedge, i);
   *n = asked;
   Cut(*shard, n, all);
   PetscCall(PetscMalloc1(*n, states));

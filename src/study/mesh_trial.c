@@ -195,10 +195,13 @@ static PetscErrorCode UsualLoads(const LamScene *scene, Cell *cell, Loads *loads
 
 static PetscErrorCode FindLoads(const LamScene *scene, Cell *cell, Loads *loads)
 {
+  PetscReal wedge;
+
   PetscFunctionBeginUser;
   loads->n = 0;
+  PetscCall(LamSampleWedge(&scene->micro, &wedge));
   if (scene->has_sample)
-    for (; loads->n < LOADS; loads->n++) LamSampleLoad(scene, loads->n, &loads->at[loads->n]);
+    for (; loads->n < LOADS; loads->n++) LamSampleLoad(scene, wedge, loads->n, &loads->at[loads->n]);
   else if (scene->load_count)
     PetscCall(FollowLoads(scene, cell, loads));
   else

@@ -29,6 +29,7 @@ static const PetscReal Accuracies[] = {0.1, 0.03, 0.01, 0.003, 0.001};
 static const char *WhyNotCells(const LamMicrostructure *micro)
 {
   if (micro->is_patch) return "a patch has the cells that it has";
+  if (micro->tissue) return "the cells are those of a file";
   if (micro->cell) return "the cells differ";
   return NULL;
 }
@@ -252,6 +253,8 @@ static PetscErrorCode FindFree(LamScene *scene, LamStates *states)
 
 PetscErrorCode LamStatesMake(LamScene *scene, LamStates *states)
 {
+  PetscReal wedge;
+
   PetscFunctionBeginUser;
   *states = (LamStates){.origin = "load", .chained = PETSC_TRUE};
   PetscCall(PetscCalloc1(PetscMax(scene->load_count, SAMPLED), &states->loads));
@@ -261,7 +264,8 @@ PetscErrorCode LamStatesMake(LamScene *scene, LamStates *states)
     PetscCall(PetscArraycpy(states->loads, scene->loads, scene->load_count));
     states->n = scene->load_count;
   } else if (scene->has_sample) {
-    for (; states->n < SAMPLED; states->n++) LamSampleLoad(scene, states->n, &states->loads[states->n]);
+    PetscCall(LamSampleWedge(&scene->micro, &wedge));
+    for (; states->n < SAMPLED; states->n++) LamSampleLoad(scene, wedge, states->n, &states->loads[states->n]);
     states->origin = "sample";
     states->chained = PETSC_FALSE;
   } else {

@@ -7,6 +7,8 @@
     differences.
 */
 #include "free_cell.h"
+#include <lamella/lattice.h>
+#include <lamella/tissue.h>
 #include "json.h"
 #include <math.h>
 #include <stddef.h>
@@ -72,11 +74,18 @@ static PetscBool Floats(const LamResponse *r)
 }
 
 /* Cells that differ, or that are held by a grip, do not all float at one suction. Several cells in a period drift apart
-   arbitrarily, and no gap determines their width. */
-static PetscBool HasOneCell(const LamMicrostructure *micro)
+   arbitrarily, and no gap determines their width. Neither does it of a cell that is no regular hexagon. */
+static PetscErrorCode HasOneHexagon(const LamMicrostructure *micro, PetscBool *has)
 {
-  return (PetscBool)(LamCellsPart(micro->interface) && !micro->is_patch && !micro->cell &&
-                     micro->cells[0] * micro->cells[1] == 1);
+  LamSymmetry symmetry;
+
+  PetscFunctionBeginUser;
+  *has = (PetscBool)(LamCellsPart(micro->interface) && !micro->is_patch && !micro->cell &&
+                     micro->cells[0] * micro->cells[1] == 1 && LamCellFaces(micro, 0) == LAM_FACES);
+  if (!*has || !micro->tissue) PetscFunctionReturn(0);
+  PetscCall(LamMicrostructureSymmetry(micro, &symmetry));
+  *has = LamSymmetryIsHexagonal(&symmetry);
+  PetscFunctionReturn(0);
 }
 
 /* Solves all states, then those that do not float again at larger stretch. *left: number that never floated. */
@@ -195,6 +204,7 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
                                PetscReal suction_max, PetscReal scale, PetscInt n, LamResponder solver,
                                LamFreeCell *cell)
 {
+  PetscBool hexagon;
   PetscInt left;
 
   PetscFunctionBeginUser;
@@ -202,7 +212,8 @@ PetscErrorCode LamFreeCellMake(const LamMicrostructure *micro, PetscReal cohesio
              PETSC_ERR_ARG_OUTOFRANGE, "%d knots of suction from %g to %g, scale %g", (int)n, (double)suction_min,
              (double)suction_max, (double)scale);
   memset(cell, 0, sizeof(*cell));
-  if (!HasOneCell(micro)) PetscFunctionReturn(0);
+  PetscCall(HasOneHexagon(micro, &hexagon));
+  if (!hexagon) PetscFunctionReturn(0);
   PetscCall(Allocate(n, cell));
   PetscCall(PetscMalloc1(n, &cell->records));
   cell->scale = scale;

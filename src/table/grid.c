@@ -2,6 +2,7 @@
   The layout of a grid: creation from a scene, JSON text in the file, states of its nodes.
 */
 #include "grid.h"
+#include <lamella/tissue.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -205,17 +206,21 @@ static PetscErrorCode MakeFreeKeys(LamGrid g)
 }
 
 /* Sets the members that follow from the tissue alone. */
-static void SetTissue(const LamMicrostructure *micro, LamGrid g)
+static PetscErrorCode SetTissue(const LamMicrostructure *micro, LamGrid g)
 {
   PetscReal softest = micro->wall.bulk_modulus;
+  LamSymmetry symmetry;
 
+  PetscFunctionBeginUser;
   for (PetscInt c = 0; micro->cell && c < micro->cells[0] * micro->cells[1]; c++)
     softest = PetscMin(softest, micro->cell[c].wall.bulk_modulus);
   g->contact = LamCellsPart(micro->interface);
-  /* all three lattice directions are equivalent if the period has equal cell counts and cells do not differ */
-  g->symmetric = (PetscBool)(micro->cells[0] == micro->cells[1] && !micro->cell);
+  /* the order of the three strains is free with all motions of a hexagon; fewer of them are not used */
+  PetscCall(LamMicrostructureSymmetry(micro, &symmetry));
+  g->symmetric = LamSymmetryIsHexagonal(&symmetry);
   g->axes = LamLatticeAxesOf(micro->orientation);
   g->turgor_reach = TURGOR_REACH * softest;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid *grid)
@@ -232,7 +237,7 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid
       scene->path);
   PetscCall(PetscNew(&g));
   *grid = g;
-  SetTissue(micro, g);
+  PetscCall(SetTissue(micro, g));
   LayOutStrains(scene, box, g);
   if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
   PetscCall(MakeFreeKeys(g));
@@ -352,8 +357,8 @@ PetscErrorCode LamGridFromText(const char path[], const LamMicrostructure *micro
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&g));
-  SetTissue(micro, g);
-  ierr = ReadText(path, object, g);
+  ierr = SetTissue(micro, g);
+  if (!ierr) ierr = ReadText(path, object, g);
   json_decref(object);
   if (ierr) (void)LamGridDestroy(&g);
   PetscCall(ierr);

@@ -279,7 +279,7 @@ static PetscErrorCode SolveSamples(Bench *bench, PetscInt64 first, PetscInt n, L
   for (PetscInt i = 0; i < n; i++) {
     LamLoad load;
 
-    LamSampleLoad(bench->scene, first + i, &load);
+    LamSampleLoad(bench->scene, PETSC_PI / 6, first + i, &load);
     PetscCall(Solve(bench, 1, &load, &responses[i]));
   }
   PetscFunctionReturn(0);
@@ -345,7 +345,7 @@ static PetscErrorCode Lacking(const Bench *bench, LamTable table, PetscReal accu
     LamLoad load;
     PetscInt more;
 
-    LamSampleLoad(bench->scene, QUESTIONS + i, &load);
+    LamSampleLoad(bench->scene, PETSC_PI / 6, QUESTIONS + i, &load);
     PetscCall(LamTableNeeds(table, &load, accuracy, NULL, &more, *keys + n));
     n += more;
   }

@@ -54,7 +54,7 @@ TEST(a_part_is_a_small_box)
   for (PetscInt i = 0; i < n; i++) {
     LamLoad load;
 
-    LamSampleLoad(&scene, states[i], &load);
+    LamSampleLoad(&scene, PETSC_PI / 6, states[i], &load);
     low = PetscMin(low, load.F[0]);
     high = PetscMax(high, load.F[0]);
   }

@@ -177,7 +177,7 @@ TEST(faces_are_renamed_with_the_image)
   }
 }
 
-QUERY_TEST(unequal_cell_counts_have_no_sixfold_symmetry, Make(2, 1))
+QUERY_TEST(unequal_cell_counts_have_no_sixfold_symmetry, Make(2, 3))
 {
   LamLoad turned = probe;
 
