@@ -75,7 +75,7 @@ expect 2 -e "patch.h5: holds states of a patch between grips" "$lamella" query p
 # cells that differ answer from their own records, and not from mirrored ones
 tissue wall="$plain" mesh='along: 2, through: 1' >uneven.yaml <<'YAML'
   cells: [2, 2]
-  variation: {kinds: [{wall_thickness: 22.5 um}], list: [0, 1, 0, 0]}
+  variation: {kinds: [{wall_thickness: 22.5 um}, {wall_thickness: 15 um}, {wall_thickness: 8 um}], list: [0, 1, 2, 3]}
 load:
   - {F: [[1, 0.1], [0, 1]]}
 YAML
