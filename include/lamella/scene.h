@@ -342,7 +342,9 @@ typedef struct {
   char name[LAM_NAME_LENGTH]; /* letters, digits, - and _ */
   LamScenePlace place;        /* of its expression, or of its name where it has none */
   LamPlaceField where;     /* region where the field is nonzero; NULL: the mesh's physical group of this name; owned */
-  LamMicrostructure micro; /* with the orientation of the region; owns its cells */
+  char tissue[PETSC_MAX_PATH_LEN]; /* file of its own cells; empty: those of the scene */
+  LamMicrostructure micro;         /* with the orientation of the region; owns its cells */
+  PetscReal reference;             /* orientation at which its tissue is solved; that of micro is the result of a turn */
   LamScales scales;        /* the region's apothem and C1 + C2, the units of micro, turgor and cohesion */
   PetscReal turgor, cohesion;
 } LamRegion;

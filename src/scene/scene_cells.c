@@ -325,10 +325,9 @@ static PetscErrorCode DropVariation(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
-/* The thickness of walls of a tissue file, times what a field makes of the mean. */
-static PetscErrorCode SetThickness(const LamNode *node, const PetscReal thickness[], LamScene *scene)
+PetscErrorCode LamSceneSetThickness(const LamNode *node, const PetscReal thickness[], PetscReal length,
+                                    LamMicrostructure *micro)
 {
-  LamMicrostructure *micro = &scene->micro;
   const PetscInt cells = micro->cells[0] * micro->cells[1];
 
   PetscFunctionBeginUser;
@@ -339,10 +338,11 @@ static PetscErrorCode SetThickness(const LamNode *node, const PetscReal thicknes
   for (PetscInt c = 0; c < cells; c++) {
     const PetscReal factor = micro->cell[c].wall_thickness / micro->wall_thickness;
 
-    micro->cell[c].wall_thickness = factor * thickness[c] / scene->scales.length;
+    micro->cell[c].wall_thickness = factor * thickness[c] / length;
     LamSceneCheck(micro->cell[c].wall_thickness < 1.0, node, "the walls of cell %d, %.3g um, fill it", (int)c,
                   (double)(1e6 * factor * thickness[c]));
   }
+  PetscCall(DropVariation(micro));
   PetscFunctionReturn(0);
 }
 
@@ -350,15 +350,16 @@ PetscErrorCode LamSceneBuildCells(const LamNode *root, const LamSceneTissue *tis
 {
   const LamNode *block = LamNodeFind(root, "rve.variation");
   const LamNode *kinds = LamNodeFind(block, "kinds"), *field = LamNodeFind(block, "field");
+  const LamNode *file = LamNodeFind(root, "rve.tissue");
   LamMicrostructure *micro = &scene->micro;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; !kinds && tissue->class && c < micro->cells[0]; c++)
-    LamSceneCheck(tissue->class[c] == 0, LamNodeFind(root, "rve.tissue"),
+    LamSceneCheck(tissue->class[c] == 0, file,
                   "cell %d is of class %d; write rve.variation.kinds, which says what its cells have", (int)c,
                   (int)tissue->class[c]);
-  if (!block && tissue->thickness) PetscCall(SetThickness(LamNodeFind(root, "rve.tissue"), tissue->thickness, scene));
-  if (!block && micro->cell) PetscCall(DropVariation(micro));
+  if (!block && tissue->thickness)
+    PetscCall(LamSceneSetThickness(file, tissue->thickness, scene->scales.length, micro));
   if (!block) PetscFunctionReturn(0);
   LamSceneCheckName(!field || block->count == 1, field,
                     "given together with %s; a variation has a field alone, or kinds and one of list, pattern and "
@@ -371,8 +372,10 @@ PetscErrorCode LamSceneBuildCells(const LamNode *root, const LamSceneTissue *tis
     PetscCall(BuildField(field, scene));
   else
     PetscCall(BuildKinds(block, kinds, tissue, scene));
-  if (tissue->thickness) PetscCall(SetThickness(LamNodeFind(root, "rve.tissue"), tissue->thickness, scene));
-  PetscCall(DropVariation(micro));
+  if (tissue->thickness)
+    PetscCall(LamSceneSetThickness(file, tissue->thickness, scene->scales.length, micro));
+  else
+    PetscCall(DropVariation(micro));
   PetscFunctionReturn(0);
 }
 
@@ -417,7 +420,8 @@ PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene)
 {
   static const char *const others[] = {"sample", "macro"};
   const LamMicrostructure *micro = &scene->micro;
-  const LamNode *loads = LamNodeFind(root, "load"), *patch = LamNodeFind(root, "rve.patch");
+  const LamNode *loads = LamNodeFind(root, "load"), *file = LamNodeFind(root, "rve.tissue");
+  const LamNode *patch = file ? file : LamNodeFind(root, "rve.patch");
   const PetscInt columns = micro->cells[0], rows = micro->cells[1];
 
   PetscFunctionBeginUser;
@@ -427,8 +431,9 @@ PetscErrorCode LamSceneCheckPatch(const LamNode *root, LamScene *scene)
 
     LamSceneCheckName(!node, node,
                       "a patch (line %d) is a body between grips, no material point, and is solved by lamella rve and "
-                      "map; leave %s out, or write rve.cells instead of the patch",
-                      patch->name_line, others[i]);
+                      "map; leave %s out, or %s",
+                      patch->name_line, others[i],
+                      file ? "name a file whose tissue has a period" : "write rve.cells instead of the patch");
   }
   if (!LamSceneNeedsCohesion(micro)) PetscFunctionReturn(0);
   if (!loads) PetscCall(CheckHold(root, NULL, scene->cohesion));

@@ -145,12 +145,19 @@ typedef struct {
   PetscInt *class;      /* [cell] kind of variation; NULL: the file gives none; owned */
 } LamSceneTissue;
 PetscErrorCode LamSceneReadTissue(const LamNode *root, LamScene *scene, LamSceneTissue *tissue);
-PetscErrorCode LamSceneBuildTissue(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene);
+/* Of a region, for its cells; nothing without a file of its own. */
+PetscErrorCode LamSceneReadRegionTissue(const LamNode *entry, LamRegion *region, LamSceneTissue *tissue);
+/* The mean thickness of walls; node: of the file, or NULL. */
+PetscErrorCode LamSceneBuildTissue(const LamNode *node, const LamSceneTissue *tissue, const LamScales *scales,
+                                   LamMicrostructure *micro);
 PetscErrorCode LamSceneDestroyTissue(LamSceneTissue *tissue);
 
 /* scene_cells.c, part of the RVE: variation between cells, and those of a tissue file. */
 #define LAM_MAX_CELLS 64 /* in one direction */
 PetscErrorCode LamSceneBuildCells(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene);
+/* Gives each cell of a file its thickness (m), times what a field makes of the mean; cells that are alike have none. */
+PetscErrorCode LamSceneSetThickness(const LamNode *node, const PetscReal thickness[], PetscReal length,
+                                    LamMicrostructure *micro);
 /* True if only cohesion holds some cells of the tissue: those at the free sides of a patch in contact. */
 PetscBool LamSceneNeedsCohesion(const LamMicrostructure *micro);
 /* Checks the rest of a complete scene for compatibility with a patch. */

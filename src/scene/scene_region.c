@@ -32,13 +32,17 @@ static const LamKey region_keys[] = {
      .help = "Its name, of letters, digits, - and _: also of its database, DB.skin.h5."},
     {TEXT("macro.regions[].where"), .default_words = "the mesh's physical group of this name", .example = "y > 9",
      .help = "Expression of x and y in mm that holds (is not 0) in the region."},
+    {PATH("macro.regions[].tissue"), INTO(LamRegion, tissue), .default_words = AS_RVE, .example = "skin.json",
+     .help = "File of its own cells, instead of hexagons or of the file of `rve`; they have a period and one class."},
     {MAP("macro.regions[].cell"), .example = "{wall_thickness: 20 um}", .help = "Its cell, as `rve.cell`."},
     {LENGTH("macro.regions[].cell.apothem", "um"), ABOVE(0), .default_words = AS_RVE, .example = "40 um",
-     .help = "Apothem."},
+     .help = "Apothem, of hexagons."},
     {LENGTH("macro.regions[].cell.wall_thickness", "um"), INTO(LamRegion, micro.wall_thickness), ABOVE(0),
-     .default_words = AS_RVE, .example = "20 um", .help = "Thickness of one cell's wall."},
+     .default_words = AS_RVE, .example = "20 um",
+     .help = "Thickness of one cell's wall, unless a file of cells gives it."},
     {ANGLE("macro.regions[].cell.orientation"), INTO(LamRegion, micro.orientation), FROM(-360), TO(360),
-     .default_words = AS_RVE, .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis."},
+     .default_words = AS_RVE "; of a file of its own 0 deg", .example = "30 deg",
+     .help = "Angle of face normal 0 to the X1 axis: the cells of a region, also of a file, are turned."},
     {MAP("macro.regions[].wall"), .example = "{C1: 0.2 MPa}", .help = "Its wall, as `rve.wall`."},
     LAM_OTHER_WALL("macro.regions[].wall", AS_RVE),
     {MAP("macro.regions[].interface"), .example = "{law: bonded}", .help = "Its middle lamella, as `rve.interface`."},
@@ -70,7 +74,7 @@ static const LamKey region_keys[] = {
     {MAP("macro.fields"), .default_words = "nothing varies", .example = "{orientation: {expression: 3 * x, unit: deg}}",
      .help = "Numbers that vary with the reference position, replacing those of `rve` and `macro.regions`."},
     TISSUE_FIELD("orientation", "{expression: 3 * x, unit: deg}", "3 * x", "deg",
-                 "Angle of face normal 0 to the X1 axis."),
+                 "Angle of face normal 0 to the X1 axis: the cells of a point, also of a file, are turned."),
     TISSUE_FIELD("turgor", "{table: turgor.csv, unit: MPa}", "0.05 * (1 - y / 10)", "MPa", "Turgor."),
     TISSUE_FIELD("cohesion", "{expression: 0.01 + 0.001 * y, unit: MPa}", "0.01 + 0.001 * y", "MPa",
                  "Cohesion, at least 0, of tissue with law `contact`; the residual one with law `lamella`."),
@@ -91,7 +95,6 @@ static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, L
   PetscReal unit;
 
   PetscFunctionBeginUser;
-  r->scales = scene->scales;
   if (apothem) {
     r->scales.length = apothem->value.number[0];
     PetscCall(LamSceneCheckScale(apothem, r->scales.length));
@@ -102,6 +105,7 @@ static PetscErrorCode BuildScales(const LamNode *entry, const LamScene *scene, L
   PetscCall(LamSceneCheckScale(node, unit * scene->scales.stress));
   LamWallScale(wall, 1.0, unit);
   r->scales.stress *= unit;
+  for (PetscInt c = 0; r->micro.cell && c < r->micro.cells[0]; c++) r->micro.cell[c].wall = *wall; /* of a file */
   PetscFunctionReturn(0);
 }
 
@@ -124,18 +128,26 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
   PetscFunctionReturn(0);
 }
 
-/* Cells that differ have their own thicknesses and moduli. */
-static PetscErrorCode CheckVariation(const LamNode *entry, const LamScene *scene)
+/* Refuses what rve.variation says of each cell, and what the file of rve.tissue does. */
+static PetscErrorCode CheckCells(const LamNode *entry, const LamScene *scene)
 {
-  static const char *const own[] = {"cell.apothem", "cell.wall_thickness", "wall"};
+  static const char *const keys[] = {"cell.apothem", "cell.wall_thickness", "wall", "tissue"};
+  const LamNode *root = entry->document->root, *file = LamNodeFind(root, "rve.tissue");
+  const PetscBool varies = (PetscBool)(LamNodeFind(root, "rve.variation") && scene->micro.cell);
+  const PetscBool has[] = {(PetscBool)(file != NULL), (PetscBool)(file && scene->micro.cell), PETSC_FALSE, PETSC_FALSE};
+  const PetscBool own = (PetscBool)(LamNodeFind(entry, "tissue") != NULL);
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; scene->micro.cell && i < PETSC_STATIC_ARRAY_LENGTH(own); i++) {
-    const LamNode *node = LamNodeFind(entry, own[i]);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(keys); i++) {
+    const LamNode *node = LamNodeFind(entry, keys[i]);
 
-    LamSceneCheckName(!node, node,
+    LamSceneCheckName(!node || !varies, node,
                       "rve.variation says what the cells are, and it is the same in all regions; leave out one of "
                       "them");
+    LamSceneCheckName(!node || own || !has[i], node,
+                      "the cells of this region are those of the file of rve.tissue (line %d), which says it; leave it "
+                      "out, or name a file of its own",
+                      file->name_line);
   }
   PetscFunctionReturn(0);
 }
@@ -179,15 +191,14 @@ static void ScaleTearing(PetscReal length, PetscReal stress, LamTearing *tearing
 }
 
 /* Missing lengths and moduli have the same physical value as in the scene's own tissue. */
-static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
+static PetscErrorCode FillTissue(const LamNode *entry, const LamScene *scene, LamSceneTissue *file, LamRegion *r)
 {
   const LamScales *own = &scene->scales, *scales = &r->scales;
   LamMicrostructure *micro = &r->micro;
   LamLamella lamella;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMicrostructureCopy(&scene->micro, micro));
-  PetscCall(CheckVariation(entry, scene));
+  PetscCall(LamSceneReadRegionTissue(entry, r, file));
   PetscCall(BuildScales(entry, scene, r));
   micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
   micro->clearance = micro->clearance * own->length / scales->length;
@@ -197,10 +208,29 @@ static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, L
   r->cohesion = scene->cohesion * own->stress / scales->stress;
   r->turgor = scene->turgor * own->stress / scales->stress;
   PetscCall(LamSceneFill(entry, scales, LamRegion, r));
+  PetscCall(LamSceneBuildTissue(LamNodeFind(entry, "tissue"), file, scales, micro));
+  if (file->thickness)
+    PetscCall(LamSceneSetThickness(LamNodeFind(entry, "tissue"), file->thickness, scales->length, micro));
   PetscCall(CheckTissue(entry, r));
   PetscCall(BuildLamella(entry, scene, &lamella, r));
   PetscCall(LamSceneCheckTearing(entry, LamNodeFind(entry, "mesh.along"), micro));
   if (micro->along && micro->grading < 0.0) micro->grading = 0.0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BuildTissue(const LamNode *entry, const LamScene *scene, LamRegion *r)
+{
+  LamSceneTissue file = {0};
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckCells(entry, scene));
+  PetscCall(LamMicrostructureCopy(&scene->micro, &r->micro));
+  r->scales = scene->scales;
+  r->reference = scene->micro.orientation;
+  ierr = FillTissue(entry, scene, &file, r);
+  PetscCall(LamSceneDestroyTissue(&file));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -258,8 +288,9 @@ static PetscErrorCode BuildField(const LamNode *block, LamTissueField which, Lam
   LamSceneCheck(!reason[0], unit, "%s; write the unit of a %s alone", reason, LamDimensionNames[dimensions[which]]);
   PetscCall(ReadField(field, &scene->fields.value[which]));
   scene->fields.place[which] = LamNodePlace(field);
-  LamSceneCheckName(which != LAM_TISSUE_WALL_THICKNESS || !scene->micro.cell, block,
-                    "rve.variation gives each cell its thickness; leave out one of them");
+  for (PetscInt r = -1; which == LAM_TISSUE_WALL_THICKNESS && r < scene->region_count; r++)
+    LamSceneCheckName(!(r < 0 ? scene->micro.cell : scene->regions[r].micro.cell), block,
+                      "rve.variation, or the file of a tissue, gives each cell its thickness; leave out one of them");
   PetscFunctionReturn(0);
 }
 

@@ -163,7 +163,7 @@ static PetscErrorCode BuildRVE(const LamNode *root, const LamSceneTissue *tissue
   if (!scene->tissue[0]) micro->is_patch = (PetscBool)(patch != NULL);
   PetscCall(CheckNotch(LamNodeFind(rve, "patch.notch"), micro));
   PetscCall(BuildTurgor(root, scene));
-  PetscCall(LamSceneBuildTissue(root, tissue, scene));
+  PetscCall(LamSceneBuildTissue(LamNodeFind(root, "rve.tissue"), tissue, scales, micro));
   PetscCall(LamSceneBuildCells(root, tissue, scene));
   PetscCall(LamSceneBuildInterface(root, scene));
   PetscFunctionReturn(0);

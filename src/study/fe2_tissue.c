@@ -261,7 +261,13 @@ static PetscErrorCode FindRanges(MPI_Comm comm, PetscInt regions, PetscInt n, co
 
 /* ---- tissues ---- */
 
-/* The scene of one tissue alone. It keeps the scene's orientation; points have angles relative to that. */
+/* The orientation at which the tissue of a region is solved. */
+static PetscReal ReferenceOf(const LamScene *scene, PetscInt region)
+{
+  return region < 0 ? scene->micro.orientation : scene->regions[region].reference;
+}
+
+/* The scene of one tissue alone, in its reference orientation; points have angles relative to that. */
 static LamScene SceneOf(const LamScene *scene, PetscInt region, PetscReal thickness)
 {
   LamScene own = *scene;
@@ -271,7 +277,7 @@ static LamScene SceneOf(const LamScene *scene, PetscInt region, PetscReal thickn
     own.micro = scene->regions[region].micro;
     own.scales = scene->regions[region].scales;
   }
-  own.micro.orientation = scene->micro.orientation;
+  own.micro.orientation = ReferenceOf(scene, region);
   own.micro.wall_thickness = thickness;
   stress = own.scales.stress / scene->scales.stress;
   own.water_bulk_modulus /= stress;
@@ -360,7 +366,7 @@ static void PlacePoint(const LamScene *scene, const Place *place, const Levels *
   point->count = LamBlendAt(levels->count, levels->thickness, place->value[LAM_TISSUE_WALL_THICKNESS] / scales->length,
                             point->term);
   for (PetscInt k = 0; k < point->count; k++) point->term[k].knot = levels->tissue[point->term[k].knot];
-  point->angle = place->value[LAM_TISSUE_ORIENTATION] - scene->micro.orientation;
+  point->angle = place->value[LAM_TISSUE_ORIENTATION] - ReferenceOf(scene, place->region);
 }
 
 /* Sets the turgor and cohesion for which each tissue's table is built, from those of its points. */

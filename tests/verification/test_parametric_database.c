@@ -1,6 +1,7 @@
 /* Answers for walls between databases, against solves of those walls. */
 #include "support/test.h"
 #include <string.h>
+#include "support/polygons.h"
 #include "support/table_fixture.h"
 #include "support/tissue.h"
 
@@ -163,6 +164,34 @@ TEST(beyond_the_knots_is_refused)
   assert_int_equal(answer.status, LAM_OUT_OF_REACH);
   assert_non_null(strstr(answer.reason, "C4/C1 = 11"));
   Close(&family, 2, databases);
+}
+
+/* Opens a family of two databases of polygons, which differ in their thickness. */
+static PetscErrorCode PolygonFamily(Displacement one, Displacement other)
+{
+  LamParametricDatabase family = NULL;
+  LamDatabase databases[2];
+  PetscErrorCode error;
+
+  for (int i = 0; i < 2; i++) {
+    LamScene scene = {.micro = Tissue(LAM_FAMILY_WALL_THICKNESS, 0.1 + 0.05 * i), .scales = {75e-6, 0.11e6, 0}};
+
+    scene.micro.cells[0] = 4;
+    CHECK(PolygonsCreate(2, i ? other : one, &scene.micro.tissue));
+    CHECK(LamDatabaseCreateEmpty(&scene, &databases[i]));
+    CHECK(LamTissueDestroy(&scene.micro.tissue));
+  }
+  CHECK(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = LamParametricDatabaseCreate(2, databases, &family);
+  CHECK(PetscPopErrorHandler());
+  Close(&family, 2, databases);
+  return error;
+}
+
+TEST(polygons_of_two_thicknesses_are_a_family_if_they_are_the_same)
+{
+  CHECK(PolygonFamily(Waves, Waves));
+  assert_int_equal(PolygonFamily(Waves, OddWaves), PETSC_ERR_USER_INPUT);
 }
 
 TEST_GROUP(.petsc = 1);
