@@ -25,6 +25,15 @@ RANK = re.compile("OMPI_(?!MCA_|ALLOW_RUN_AS_ROOT)|OMPI_MCA_(orte_|ess|pmix|init
                   "(PMIX|PRTE)_(?!MCA_)|PMI_|ORTE_")
 
 
+_children: set["subprocess.Popen[str]"] = set()  # commands that run
+
+
+def stop() -> None:
+    """Asks all commands that run to stop: each ends as after a signal, and the `run` of it raises Error."""
+    for child in list(_children):
+        child.terminate()
+
+
 class Run:
     """What a command has said: objects, of --json; complete: all was solved; warnings, lines of its standard error."""
 
@@ -65,12 +74,15 @@ def run(command: str, *arguments: Any, ranks: int = 1) -> Run:
         words = ["mpirun", "-n", str(ranks), *words]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           env=environment()) as child:
+        _children.add(child)
         try:
             out, err = child.communicate()
         except KeyboardInterrupt:
             child.send_signal(signal.SIGINT)  # from a terminal it has it already; the third would end it at once
             child.communicate()
             raise
+        finally:
+            _children.discard(child)
     status = child.returncode
     if status in (USAGE, INPUT):
         raise InputError(err.strip())

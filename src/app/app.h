@@ -198,7 +198,7 @@ typedef struct {
   const char *need;    /* "pictures need": how messages about what is missing begin */
   const char *package; /* of Python, besides NumPy */
 } LamPython;
-extern const LamPython LamPythonPlot, LamPythonTissue;
+extern const LamPython LamPythonPlot, LamPythonTissue, LamPythonRealisations;
 /* Has it do what the request asks for, a JSON object. Takes ownership of the request. *exit_status is that of the
    Python process, which has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
 PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status);

@@ -5,6 +5,7 @@
   to factor the matrices of large RVEs, otherwise they wait.
 */
 #include "app.h"
+#include "rve_realisations.h"
 #include "rve_run.h"
 #include "clock.h"
 #include <math.h>
@@ -263,10 +264,28 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
   PetscFunctionReturn(0);
 }
 
+/* The name of an option that is given and does not go with realisations; NULL: there is none. */
+static const char *NotOfRealisations(const Command *command)
+{
+  const LamRVERun *run = &command->run;
+
+  return command->tangent                   ? "tangent"
+         : run->find_onset                  ? "onset"
+         : run->second_mesh                 ? "second-mesh"
+         : run->find_failure                ? "failure"
+         : run->global                      ? "global"
+         : run->no_estimate                 ? "no-estimate"
+         : run->monitor                     ? "monitor"
+         : command->console.test.readings   ? "readings"
+         : command->console.test.at != NULL ? "at"
+                                            : NULL;
+}
+
 PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
 {
   Command command = {.console.command = "rve"};
   LamRVERun *run = &command.run;
+  LamRealisations realisations = {.count = 0};
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
@@ -288,6 +307,13 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       LAM_TEST_OPTIONS(command.console.test, " (always where the load begins with inflate)"),
       {0, "no-estimate", LAM_OPTION_FLAG, NULL, "no estimate of the error: a tenth to a quarter less time",
        &run->no_estimate},
+      {0, "realisations", LAM_OPTION_FROM_2, "N",
+       "how large a period must be: solve N tissues like the scene's, which lamella tissue has made; -o is a folder",
+       &realisations.count},
+      {0, "cells", LAM_OPTION_TEXT, "N,...", "cells in a period of the realisations (default: the scene's tissue)",
+       &realisations.cells},
+      {0, "processes", LAM_OPTION_FROM_1, "N", "realisations at a time (default: as many as processors)",
+       &realisations.processes},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run->monitor},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &command.console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
@@ -297,10 +323,17 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   PetscCall(
       LamOptionsParse(args,
                       "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--readings]\n"
-                      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]",
+                      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]\n"
+                      "       lamella rve SCENE --realisations N [--cells N,...] [--processes N] [-o FOLDER] [--json]\n"
+                      "           [--quiet]",
                       "Solves the representative volume element along the scene's load.", options, 1,
                       &command.scene_path, &done, exit_status));
-  if (done) PetscFunctionReturn(0);
+  if (done || !LamRealisationsFit(&realisations, NotOfRealisations(&command), exit_status)) PetscFunctionReturn(0);
+  if (realisations.count) {
+    PetscCall(LamRealisationsRun(&realisations, command.scene_path, run->out_path, command.console.json,
+                                 command.console.quiet, exit_status));
+    PetscFunctionReturn(0);
+  }
   if (!LamTestReadOptions("rve", &command.console.test, exit_status)) PetscFunctionReturn(0);
   run->readings = command.console.test.readings;
   if (run->find_onset) run->second_mesh = PETSC_TRUE;

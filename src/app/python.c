@@ -13,7 +13,8 @@
 #define PYTHON "/usr/bin/python3"
 
 const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matplotlib"},
-                LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"};
+                LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"},
+                LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"};
 
 /* A package that is missing is found when it is imported, here or where a file is opened. */
 static const char Program[] =
@@ -58,16 +59,17 @@ static void FindFolder(const char program[], const char *const folders[], const 
 }
 
 /* Where the package is: beside the program, or where it is installed with it; an installed one has its library inside.
- */
+   The program that it runs is this one. */
 static void FindPackage(char package[PETSC_MAX_PATH_LEN])
 {
   static const char *const packages[] = {"python", "../share/lamella/python", NULL}, *const libraries[] = {".", NULL};
-  char program[PETSC_MAX_PATH_LEN], library[PETSC_MAX_PATH_LEN];
+  char program[PETSC_MAX_PATH_LEN], library[PETSC_MAX_PATH_LEN], itself[PETSC_MAX_PATH_LEN];
 
   ProgramFolder(program);
   FindFolder(program, packages, "lamella/plot/__main__.py", package);
   FindFolder(program, libraries, "liblamella.so", library);
   if (library[0]) setenv("LAMELLA_LIBRARY", library, 0);
+  if (realpath("/proc/self/exe", itself)) setenv("LAMELLA_PROGRAM", itself, 0);
 }
 
 /* The child is no rank of this job. */

@@ -5,7 +5,8 @@
     page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
-`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff` and `cells` say which it is. All take
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells` and `realisations`
+say which it is. All take
     title   text, or False: none
     size    width and height of the page, inches
     range   limits of the colour scale of the field, in its unit on the colour bar
@@ -19,9 +20,10 @@ from .. import InputError
 from .page import Page, check_path
 from .read import Source
 
-__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "save", "fields", "Page"]
+__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
-_TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file")}
+_TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file"),
+          "realisations": ("realisations", "what realisations tell")}
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -79,11 +81,12 @@ def _page(kind, path, options, page):
 
 
 def _kind_of_text(path):
-    """tradeoff or cells, of a file that is no HDF5; None: it may be one."""
+    """tradeoff, cells or realisations, of a file that is no HDF5; None: it may be one."""
     if Path(path).suffix not in (".json", ".yaml", ".yml"):
         return None
     with open(path, encoding="utf-8", errors="replace") as file:
-        return "cells" if "lamella_tissue" in file.read() else "tradeoff"
+        text = file.read()
+    return "cells" if "lamella_tissue" in text else "realisations" if "lamella_realisations" in text else "tradeoff"
 
 
 def draw(path, **options):
@@ -130,6 +133,11 @@ def tradeoff(path, **options):
 def cells(path, **options):
     """The cells of a tissue file (`tissue -o`) at rest: walls, lumens and air, one period outlined."""
     return _draw("cells", path, options)
+
+
+def realisations(path, **options):
+    """Scatter and means against the cells in a period, of a realisations.json of `rve --realisations`."""
+    return _draw("realisations", path, options)
 
 
 def fields():

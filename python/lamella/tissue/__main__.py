@@ -2,6 +2,7 @@
 import json
 import re
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -55,11 +56,10 @@ def run(request: dict[str, Any]) -> None:
     sys.stdout.flush()
 
 
-def main(argument: str) -> int:
-    """Exit status of a request."""
+def served(command: str, run: Callable[[dict[str, Any]], int | None], argument: str) -> int:
+    """Exit status of a request, what is wrong with it told in words."""
     try:
-        run(json.loads(argument))
-        return 0
+        return run(json.loads(argument)) or 0
     except InputError as error:
         status, message = INPUT, str(error)
     except OSError as error:
@@ -70,8 +70,13 @@ def main(argument: str) -> int:
         status, message = FAULT, str(error)
     except KeyboardInterrupt:
         return 130
-    print(f"lamella tissue: {message}", file=sys.stderr)
+    print(f"lamella {command}: {message}", file=sys.stderr)
     return status
+
+
+def main(argument: str) -> int:
+    """Exit status of a request."""
+    return served("tissue", run, argument)
 
 
 if __name__ == "__main__":
