@@ -132,9 +132,10 @@ def _failure(solved: Solved, sizes: list[int]) -> Object:
 
 def _need(states: list[Object], accuracy: float) -> Object | None:
     """That of the state that needs most cells."""
-    needs = [{"accuracy": accuracy, "confidence": 0.95, "state": entry["state"], **entry["stress"]["need"],
-              "holds": entry["stress"]["fit"]["holds"]} for entry in states if entry["stress"]["need"]]
-    return max(needs, key=lambda need: need["cells"], default=None)
+    needs: list[Object] = [{"accuracy": accuracy, "confidence": 0.95, "state": entry["state"],
+                            **entry["stress"]["need"], "holds": entry["stress"]["fit"]["holds"]}
+                           for entry in states if entry["stress"]["need"]]
+    return max(needs, key=lambda need: int(need["cells"])) if needs else None
 
 
 def summary(path: str, plan: "Plan", solved: Solved, count: int) -> Object:

@@ -2,7 +2,7 @@
 an accuracy needs. All intervals have a confidence of 95 %."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -71,13 +71,13 @@ def bias(entries: Sequence[Entry]) -> list[Entry]:
             if e["interval"][1] < known[-1]["interval"][0] or known[-1]["interval"][1] < e["interval"][0]]
 
 
-def quantity(name: str, unit: str, values: dict[int, ArrayLike]) -> Entry:
+def quantity(name: str, unit: str, values: Mapping[int, ArrayLike]) -> Entry:
     """All that is told of a quantity whose values are given by the number of cells."""
     entries = [mean_of(cells, v) for cells, v in values.items()]
     return {"name": name, "unit": unit, "sizes": entries, "fit": fit(entries), "bias": bias(entries)}
 
 
-def relative(name: str, values: dict[int, np.ndarray], accuracy: float, floor: float = 0.0) -> Entry:
+def relative(name: str, values: Mapping[int, np.ndarray], accuracy: float, floor: float = 0.0) -> Entry:
     """Scatter of values [n, m] by the number of cells, relative to their mean: root of the sum of the variances of the m
     components over the larger one of |mean| and the floor, which of stress is the norm of `accuracy`. bias: distance of
     the mean from that of the largest size, where it is beyond their intervals, else 0. None where too few are known."""
