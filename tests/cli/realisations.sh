@@ -1,5 +1,5 @@
-# lamella rve --realisations: means and deviations are those of the single responses; a second call goes on; the fit, isotropy
-# and what an accuracy needs, against cases that are known; failures are told; refusals; a picture.
+# lamella rve --realisations: means and deviations are those of the single responses; a second call goes on; the fit,
+# isotropy and what an accuracy needs, against cases that are known; failures are told; refusals; a picture.
 . "$(dirname "$0")/common.sh"
 package scipy
 
@@ -152,7 +152,7 @@ scene made.json "$load" | sed 's/^load/  variation: {kinds: [{turgor: 2}], list:
 expect 2 -e "hexagons.yaml: rve.tissue is missing" "$lamella" rve hexagons.yaml --realisations 2
 expect 2 -e "hand.json: was not made by .lamella tissue" "$lamella" rve hand.yaml --realisations 2
 expect 2 -e "noload.yaml: has no block" "$lamella" rve noload.yaml --realisations 2
-expect 2 -e "list.yaml: rve.variation.list: has the cells of one tissue" "$lamella" rve list.yaml --realisations 2
+expect 2 -e "list.yaml: rve.variation.list: is of the cells of one tissue" "$lamella" rve list.yaml --realisations 2
 expect 2 -e "all: has realisations of another scene" "$lamella" rve fails.yaml --realisations 2 -o all
 expect 2 -e "--cells 3: 4 to 20000" "$lamella" rve scene.yaml --realisations 2 --cells 8,3
 expect 2 -e "--cells 8;9: numbers of cells" "$lamella" rve scene.yaml --realisations 2 --cells '8;9'

@@ -28,8 +28,8 @@ class _Series:
         assert NEEDED <= scatter.keys() and NEEDED <= quantity.keys()
 
     def means(self):
-        """Cells, means, intervals and single values over the mean of the largest period with one, less 1; None: there is
-        none."""
+        """Cells, means, intervals and single values over the mean of the largest period with one, less 1; None: there
+        is none."""
         known = [entry for entry in self.quantity["sizes"] if entry["interval"] and entry["mean"]]
         if not known:
             return None

@@ -78,7 +78,7 @@ def _base(path: str, asked: Asked) -> Object:
     scene = scene_dict(path)
     variation = scene["rve"].get("variation") or {}
     if "list" in variation:
-        raise InputError(f"{path}: rve.variation.list: has the cells of one tissue; write random, which all tissues have")
+        raise InputError(f"{path}: rve.variation.list: is of the cells of one tissue; write random, which all have")
     told = program.run("check", path)
     for warning in told.warnings:
         print(f"lamella rve: {_words(Error(warning))}", file=sys.stderr)

@@ -37,7 +37,8 @@ def _quantities(told: Object) -> Iterator[str]:
 
 
 def _scatter_row(label: str, of: Object) -> str:
-    fit, row = of["fit"], f"{label:>5s} {of['name']:7s}" + "".join(_percent(entry["deviation"]) for entry in of["sizes"])
+    fit = of["fit"]
+    row = f"{label:>5s} {of['name']:7s}" + "".join(_percent(entry["deviation"]) for entry in of["sizes"])
     if fit is None:
         return row + f"{'-':>9}{'-':>9}"
     row += _percent(fit["s1"]) + f"{of['need']['cells']:9d}"

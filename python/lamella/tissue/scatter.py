@@ -1,5 +1,5 @@
-"""Statistics of realisations: means with their intervals, how scatter falls with the number of cells, isotropy, and what
-an accuracy needs. All intervals have a confidence of 95 %."""
+"""Statistics of realisations: means with their intervals, how scatter falls with the number of cells, isotropy, and
+what an accuracy needs. All intervals have a confidence of 95 %."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -23,8 +23,8 @@ def student(freedom: int) -> float:
 
 
 def mean_of(cells: int, values: ArrayLike) -> Entry:
-    """Count, mean, standard deviation and their intervals (Student, chi square) of values [n] that are known; what takes
-    two values is None of one."""
+    """Count, mean, standard deviation and their intervals (Student, chi square) of values [n] that are known; what
+    takes two values is None of one."""
     v = np.asarray(values, float)
     v = v[np.isfinite(v)]
     n = len(v)
@@ -65,7 +65,7 @@ def fit(entries: Sequence[Entry]) -> Entry | None:
 
 
 def bias(entries: Sequence[Entry]) -> list[Entry]:
-    """Sizes whose mean differs from that of the largest one by more than the two intervals together, and by how much."""
+    """Sizes whose mean differs from that of the largest one by more than both intervals, and by how much."""
     known = [e for e in entries if e["interval"]]
     return [{"cells": e["cells"], "difference": e["mean"] - known[-1]["mean"]} for e in known
             if e["interval"][1] < known[-1]["interval"][0] or known[-1]["interval"][1] < e["interval"][0]]
@@ -78,9 +78,10 @@ def quantity(name: str, unit: str, values: Mapping[int, ArrayLike]) -> Entry:
 
 
 def relative(name: str, values: Mapping[int, np.ndarray], accuracy: float, floor: float = 0.0) -> Entry:
-    """Scatter of values [n, m] by the number of cells, relative to their mean: root of the sum of the variances of the m
-    components over the larger one of |mean| and the floor, which of stress is the norm of `accuracy`. bias: distance of
-    the mean from that of the largest size, where it is beyond their intervals, else 0. None where too few are known."""
+    """Scatter of values [n, m] by the number of cells, relative to their mean: root of the sum of the variances of the
+    m components over the larger one of |mean| and the floor, which of stress is the norm of `accuracy`. bias: distance
+    of the mean from that of the largest size, where it is beyond their intervals, else 0. None where too few are
+    known."""
     known = {cells: v[np.isfinite(v).all(1)] for cells, v in values.items()}
     means = [v.mean(0) for v in known.values() if len(v) > 1]
     entries = [_relative(cells, v, means[-1] if means else np.nan, floor) for cells, v in known.items()]
@@ -130,8 +131,8 @@ def isotropic(A: np.ndarray) -> np.ndarray:
 
 
 def isotropy(cells: int, A: np.ndarray) -> Entry:
-    """Of tangents [n, 2, 2, 2, 2]: A1111 - A2222; distance of the mean tangent from its mean over all rotations, over the
-    norm of the latter, and the distance below which 95 % of realisations of isotropic tissue would be, by their
+    """Of tangents [n, 2, 2, 2, 2]: A1111 - A2222; distance of the mean tangent from its mean over all rotations, over
+    the norm of the latter, and the distance below which 95 % of realisations of isotropic tissue would be, by their
     scatter."""
     A = A[np.isfinite(A).all((1, 2, 3, 4))]
     told: Entry = {"cells": cells, "difference": mean_of(cells, A[:, 0, 0, 0, 0] - A[:, 1, 1, 1, 1]),
