@@ -154,7 +154,7 @@ expect 2 -e "hand.json: was not made by .lamella tissue" "$lamella" rve hand.yam
 expect 2 -e "noload.yaml: has no block" "$lamella" rve noload.yaml --realisations 2
 expect 2 -e "list.yaml: rve.variation.list: is of the cells of one tissue" "$lamella" rve list.yaml --realisations 2
 expect 2 -e "all: has realisations of another scene" "$lamella" rve fails.yaml --realisations 2 -o all
-expect 2 -e "--cells 3: 4 to 20000" "$lamella" rve scene.yaml --realisations 2 --cells 8,3
+expect 2 -e "--cells 3: 4 to 4096" "$lamella" rve scene.yaml --realisations 2 --cells 8,3
 expect 2 -e "--cells 8;9: numbers of cells" "$lamella" rve scene.yaml --realisations 2 --cells '8;9'
 expect 1 -e "a whole number from 2 on" "$lamella" rve scene.yaml --realisations 1
 expect 1 -e "--cells is of --realisations" "$lamella" rve scene.yaml --cells 8

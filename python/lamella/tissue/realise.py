@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .. import Error, InputError, Scene, program, scene_dict
-from . import realised
+from . import realised, scatter
 from .__main__ import served
 from .file import Tissue
 from .make import Asked
@@ -218,7 +218,8 @@ def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[in
     asked = _asked(path, scene_dict(path))
     sizes = sorted(set(cells or [asked.cells]))
     for n in sizes:
-        dataclasses.replace(asked, cells=n).check()
+        if not scatter.LEAST <= n <= scatter.MOST:
+            raise InputError(f"--cells {n}: {scatter.LEAST} to {scatter.MOST} are wanted")
     if not 2 <= realisations < NUMBERS:
         raise InputError(f"--realisations {realisations}: 2 to {NUMBERS - 1} are wanted")
     plan = Plan(asked, _base(path, asked), Path(output))

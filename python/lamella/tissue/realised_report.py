@@ -4,6 +4,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, TypeAlias
 
+from . import scatter
+
 Object: TypeAlias = dict[str, Any]
 MOST_TOLD = 10  #: failed states that are told in words; --json has all
 
@@ -107,8 +109,9 @@ def _need(told: Object) -> str:
     counts = (f"{r['count']} of {r['cells']}" + (f" (whose mean is off by {100 * off[r['cells']]:.2g} %)"
                                                  if off[r["cells"]] > need["accuracy"] else "")
               for r in need["realisations"])
+    too_many = f", more than the {scatter.MOST} that a scene takes" if need["cells"] > scatter.MOST else ""
     text = f"for accuracy {100 * need['accuracy']:g} % of the stress with 95 % confidence (state {need['state']}): 1 " \
-           f"period of {need['cells']} cells, or " + ", or ".join(counts)
+           f"period of {need['cells']} cells{too_many}, or " + ", or ".join(counts)
     if need["holds"] is None:
         return text + "; that scatter falls as 1/sqrt(cells) is taken for granted: give several sizes by --cells"
     return text if need["holds"] else text + "; not safe, since scatter does not fall as 1/sqrt(cells)"

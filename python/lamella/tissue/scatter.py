@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 BOTH_SIDES = 0.975  #: quantile at either end of a confidence of 95 %
-LEAST = 4  #: cells that `lamella tissue` makes (make.Asked)
+LEAST, MOST = 4, 4096  #: cells that `lamella tissue` makes (make.Asked) and that a scene takes (LAM_MAX_CELLS^2)
 PLANE = (0, 1, 3, 4)  #: components 11, 12, 21, 22 of row-major tensors
 NOISE = 1e-9  #: relative deviation of what is prescribed, up to rounding and Newton's tolerance
 TURNS = 8  #: angles over which a tensor of fourth order has its mean over all rotations exactly: more than four
