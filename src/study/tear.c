@@ -340,11 +340,6 @@ static PetscErrorCode CheckScene(const LamScene *scene)
   PetscCheck(!micro->is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.patch: a block of cells between grips is no layer that goes on to both sides; write rve.cells",
              scene->path);
-  PetscCheck(
-      !micro->tissue, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-      "%s: rve.tissue: a layer of the height of a period, and the crack of least energy through it, are found for "
-      "rows of hexagons alone; write rve.cells",
-      scene->path);
   PetscCheck(!scene->sealed, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.turgor.mode: sealed: the law of a layer is that under a given turgor; write mode: prescribed",
              scene->path);
