@@ -289,21 +289,29 @@ static double AlongAt(const double c[LAM_SPAN][2], double t, const double X[2])
   return (X[0] - y[0]) * tau[0] + (X[1] - y[1]) * tau[1];
 }
 
-/* Whether a point at X on a wall whose tangent is tau touches a span. */
-static int Touches(const LamWalls *walls, const double c[LAM_SPAN][2], const double X[2], const double tau[2],
-                   int itself)
+/* Gap of a point at X from a span; infinite where the point is not beside it. */
+static double GapFrom(const double c[LAM_SPAN][2], const double X[2])
 {
   LamSplineCurve curve;
   LamTouchGap gap;
-  double opposed;
 
   LamSplineCurveOf(c, &curve);
-  if (!(AlongAt(c, 0.0, X) > 0.0) || AlongAt(c, 1.0, X) > 0.0) return 0;
+  if (!(AlongAt(c, 0.0, X) > 0.0) || AlongAt(c, 1.0, X) > 0.0) return INFINITY;
   LamTouchGapAt(&curve, X, LamSplineClosest(&curve, X), &gap);
-  opposed = tau[1] * gap.normal[0] - tau[0] * gap.normal[1];
-  if (gap.gap >= WIDTH) return 0;
-  if (itself) return gap.gap >= -walls->thickness[0];
-  return gap.gap >= -WIDTH || (gap.gap >= -DEEPEST && opposed < 0.0);
+  return gap.gap;
+}
+
+/* Whether a point touches span `other`, from its gaps from all spans of the loop. */
+static int Touches(const LamWalls *walls, const double gap[], int other, int itself)
+{
+  const double depth = -gap[other];
+
+  if (gap[other] >= WIDTH) return 0;
+  if (itself) return depth <= walls->thickness[0];
+  if (depth <= WIDTH) return 1;
+  for (int k = 0; k < SpansOf(walls); k++)
+    if (k != other && fabs(gap[k]) < depth) return 0;
+  return depth <= DEEPEST;
 }
 
 /* Takes off what must be found of a point of a wall, in one image. */
@@ -312,19 +320,22 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
   const LamWalls *walls = p->walls;
   const double(*L)[2] = walls->mesh->period, S[2] = {i * L[0][0] + j * L[1][0], i * L[0][1] + j * L[1][1]};
   const int n = SpansOf(walls), itself = i == 0 && j == 0;
-  double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], tau[2];
+  double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], *gap = calloc((size_t)n, sizeof(*gap));
 
   SpanOf(walls, span, own);
   LamSplineSum(walls->at[point].N, (const double(*)[2])own, X);
-  LamSplineSum(walls->at[point].dN, (const double(*)[2])own, tau);
   for (int d = 0; d < 2; d++) X[d] -= sheared[3 * d] * S[0] + sheared[3 * d + 1] * S[1];
+  for (int other = 0; other < n; other++) {
+    SpanOf(walls, other, c);
+    gap[other] = GapFrom((const double(*)[2])c, X);
+  }
   for (int other = 0; other < n; other++) {
     const int between = PetscMin(abs(span - other), n - abs(span - other));
 
     if (itself && between < walls->apart) continue;
-    SpanOf(walls, other, c);
-    if (Touches(walls, (const double(*)[2])c, X, tau, itself)) p->found[PairOf(p, i, j, span, point, other)]--;
+    if (Touches(walls, gap, other, itself)) p->found[PairOf(p, i, j, span, point, other)]--;
   }
+  free(gap);
 }
 
 static void PairsEnter(Pairs *p, LamRVE rve)
