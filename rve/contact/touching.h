@@ -17,7 +17,8 @@
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 
   Closest points are computed where the boxes of two spans lie within reach, and the point is not farther outside the
-  other span than the width, as seen along the normal of its chord.
+  other span than the width, as seen along the normal of its chord. One that lies deeper than the width behind a span has
+  entered its wall only if no other span of that loop is nearer.
 */
 #ifndef LAM_RVE_TOUCHING_H
 #define LAM_RVE_TOUCHING_H

@@ -175,7 +175,7 @@ static PetscErrorCode PrintObject(const Check *check)
                       json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
                                 check->digits[0] ? check->digits : NULL));
   json_object_set_new(o, "warnings", Warnings(check));
-  if (micro->is_patch)
+  if (micro->is_patch && !micro->tissue)
     json_object_set_new(o, "patch",
                         json_pack("{s:I, s:I, s:s}", "columns", (json_int_t)micro->cells[0], "rows",
                                   (json_int_t)micro->cells[1], "sides", LamPatchSidesNames[micro->sides]));
@@ -317,7 +317,10 @@ static void PrintModel(const Check *check)
 
   printf("%-12s %s\n", "scene", scene->path);
   printf("%-12s plane strain, ", "model");
-  if (micro->is_patch)
+  if (micro->tissue)
+    printf("%s of %" PetscInt_FMT " cells of any shape, mean apothem %.4g um", micro->is_patch ? "a patch" : "periods",
+           micro->cells[0], (double)(1e6 * scene->scales.length));
+  else if (micro->is_patch)
     printf("a patch of %" PetscInt_FMT " columns and %" PetscInt_FMT " rows of cells between grips, lateral sides %s",
            micro->cells[0], micro->cells[1], LamPatchSidesNames[micro->sides]);
   else

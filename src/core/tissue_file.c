@@ -278,8 +278,8 @@ PetscErrorCode LamTissueFileRead(const char path[], LamPatchSides sides, PetscRe
   PetscFunctionBeginUser;
   (void)PetscMemzero(file, sizeof(*file));
   r.root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-  MUST(r.root, "%s:%d:%d: cannot be read as JSON: %s", path, PetscMax(0, error.line), PetscMax(0, error.column),
-       error.text);
+  MUST(r.root || error.line > 0, "%s: the tissue cannot be read: %s", path, error.text);
+  MUST(r.root, "%s:%d:%d: is no JSON: %s", path, error.line, error.column, error.text);
   ierr = ReadAll(&r);
   json_decref(r.root);
   PetscCall(PetscFree(r.vertex));
