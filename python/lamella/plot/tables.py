@@ -54,7 +54,8 @@ class Slice:
 
     def __init__(self, source, database, angle, suction, turgor, accuracy):
         tissue, self.parts = source.tissue, source.parts
-        self.orientation = float(tissue.get("orientation", 0))
+        self.hexagons = "tissue" not in tissue
+        self.orientation = float(tissue.get("orientation", 0)) if self.hexagons else 0.0
         self.angle = 0 if angle is None else quantity(angle, "angle")
         self.accuracy = float(source.file.attrs["accuracy"]) if accuracy is None else float(accuracy)
         self.source, self.unit = source, source.stress_unit
@@ -105,7 +106,7 @@ class Slice:
         """Images of nodes within reach: e1, e2, level and kind."""
         tissue, r = self.source.tissue, self.responses
         same = tissue.get("cells", [1, 1])
-        images = 6 if same[0] == same[1] and "cell" not in tissue else 1
+        images = 6 if same[0] == same[1] and not {"cell", "tissue"} & set(tissue) else 1
         chosen = self.nodes[np.abs(self.suction[self.nodes] - self.node_suction) <= ROUNDING * self.unit]
         strain, angle = principal(r.F[chosen])
         sound = r.stable[chosen] & (r.branch[chosen] == 0)
@@ -219,14 +220,15 @@ def _legend(page, s, width):
 
 
 def _glyph(page, s):
-    """A cell and the two principal axes."""
+    """A cell, where it is a hexagon, and the two principal axes."""
     x, y = page.size[0] - 1.6 * GLYPH, HEADER / 2 + 2
     axes = page.area(x - 1.6 * GLYPH, y - 1.6 * GLYPH, 3.2 * GLYPH, 3.2 * GLYPH, facecolor="none")
     axes.set(xlim=(-1.6, 1.6), ylim=(-1.6, 1.6))
     axes.set_axis_off()
     around = s.orientation + np.pi / 6 + np.arange(6) * np.pi / 3
-    axes.add_patch(Polygon(0.8 * np.stack([np.cos(around), np.sin(around)], axis=1), facecolor="#cce6c7",
-                           edgecolor="#738c6e", linewidth=1.6))
+    if s.hexagons:
+        axes.add_patch(Polygon(0.8 * np.stack([np.cos(around), np.sin(around)], axis=1), facecolor="#cce6c7",
+                               edgecolor="#738c6e", linewidth=1.6))
     for name, turn in (("1", 0), ("2", np.pi / 2)):
         n = np.array([np.cos(s.orientation + s.angle + turn), np.sin(s.orientation + s.angle + turn)])
         axes.annotate("", n, -n, arrowprops={"arrowstyle": "->", "color": INK, "linewidth": 0.9, "shrinkA": 0,
@@ -253,8 +255,9 @@ def _slice_page(source, choice, options):
               (s.stress / stress_one, f"stress $\\Vert P\\Vert$ ({stress_unit})", None),
               (error, "estimated error of $P$ (%)", error_range),
               (s.volume, f"{'gaps' if s.parts else 'lumens'} (% of $V_0$)", None)]
-    degrees = np.degrees(s.angle)
-    labels = [f"log. strain $e_{k + 1}$, {ratio(degrees + 90 * k)}° to face normal" for k in (0, 1)]
+    degrees, axis = np.degrees(s.angle), "face normal" if s.hexagons else "$X_1$"
+    degrees += 0 if s.hexagons else np.degrees(s.orientation)
+    labels = [f"log. strain $e_{k + 1}$, {ratio(degrees + 90 * k)}° to {axis}" for k in (0, 1)]
     width, height = (page.size[0] - 18) / 2, (page.size[1] - HEADER) / 2
     norms = [norm or Range(values.ravel(), options) for values, _, norm in panels]
     room = max(map(bar_width, norms))

@@ -1,32 +1,23 @@
 """Cells in a picture: walls with a field, lumens, outlines, periodic images in paler colours; of tissue whose cells can
-come apart gaps, contact pressure and the lamella.
-
-Gaps are strips between two walls, coloured by their width; thinner ones than a line are drawn with a line's width, so
-that an open face never looks closed. Pressure is a ribbon along the face, widest at the largest pressure. The lamella
-is a line along the face, from black to white by the share of its energy that is spent; where it still holds across a
-gap that is seen, threads cross the gap.
-"""
+come apart what is between them (interface.py)."""
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.patches import PathPatch, Polygon, Rectangle
+from matplotlib.path import Path
 
 from .. import InputError
-from . import mesh as meshes
+from . import interface, mesh as meshes
+from .interface import PRESSURE, PULL, VISIBLE_GAP, WIDEST_RIBBON, Interface, faded, is_straight
 from .page import DARK, DASHES, FIELD, GAPS, INK, LAMELLA, RED, ROW, SMALL, Range, bar, bar_width, number
 
 FIELDS = {"wall_stress": ("largest principal Cauchy stress", "MPa"), "fibre_stretch": ("fibre stretch", None)}
-LUMEN, PRESSURE = "#e6f1f7", "#f28700"
+LUMEN = "#e6f1f7"
 FADE = 0.55  #: share of white in the periodic images
-VISIBLE_GAP = 1e-3  #: apothems
 MARGIN, CONTACT_MARGIN = 1.1, 0.5  #: apothems around cells: neighbours are seen; where cells part, gaps are seen larger
 SCALE_BAR = 52  #: points at most: half of the narrowest panel of a strip
 THINNEST_WALL = 1.5  #: points in which the colours of a wall are still told apart
-THINNEST_GAP, WIDEST_RIBBON, WIDEST_LAMELLA = 1.1, 5, 1.3  #: points
-CASING = 1.6  #: of the lamella's line: width of its dark outlines over its own
-THREAD, THREAD_DISTANCE, SHORTEST_THREAD = 0.7, 2.6, 1.5  #: points
-ROUNDING = 1e-5  #: of C1 + C2: a smaller contact pressure is the solver's tolerance
-HOLDS = 0.999  #: a lamella less broken than this is drawn across gaps
+WIDEST_LAMELLA = 1.3  #: points
 REACH = 12  #: periods to each side in which images are looked for: more than the margins need
 
 
@@ -37,10 +28,6 @@ def field_of(name):
     name = name or next(iter(FIELDS))
     label, unit = FIELDS[name]
     return name, f"{label} ({unit})" if unit else label
-
-
-def faded(colour, share):
-    return tuple(c + share * (1 - c) for c in to_rgb(colour))
 
 
 PALE = LinearSegmentedColormap.from_list("pale", [faded(c, FADE) for c in FIELD(np.linspace(0, 1, 256))], N=256)
@@ -68,26 +55,6 @@ class View:
         return (x - self.low) * self.scale
 
 
-class Interface:
-    """Samples along the faces at one state (docs/reference/files.md): arrays [face, point, ...]."""
-
-    def __init__(self, source, group):
-        read = lambda name: source.array(f"{group}/interface/{name}")
-        self.start, self.to, self.gap, self.pressure = map(read, ("from", "to", "gap", "pressure"))
-        shape = self.gap.shape
-        if len(shape) != 2 or self.pressure.shape != shape or self.start.shape != shape + (2,) or \
-                self.to.shape != shape + (2,):
-            raise InputError(f"{source.path}: {group}/interface is damaged")
-        self.has_lamella = source.has(f"{group}/interface/broken")
-        if self.has_lamella:
-            self.across, self.broken = read("across"), read("broken")
-            if self.broken.shape != shape or self.across.shape != shape + (2,):
-                raise InputError(f"{source.path}: {group}/interface is damaged")
-        self.widest = float(np.nanmax(self.gap, initial=0))
-        largest = float(np.nanmax(self.pressure, initial=0))  # MPa
-        self.largest_pressure = largest if largest * 1e6 > ROUNDING * source.stress_unit else 0.0
-
-
 class Cells:
     """The tissue of one state. mesh, fields: groups of the file; F [3, 3] of the state."""
 
@@ -101,7 +68,8 @@ class Cells:
         self.mesh = meshes.Mesh(elements, n, cell, f"{source.path}: {mesh}/elements")
         self.x = source.points(f"{fields}/x", n)
         self.values = source.array(f"{fields}/{field}", n, 1).astype(float).ravel()
-        self.interface = Interface(source, fields) if parts else None
+        self.interface = Interface(source, mesh, fields, elements, cell.ravel(), self.nodes) if parts else None
+        self.forces = None  #: that are to be drawn
         self.outer = [loop for loop in self.mesh.loops if meshes.area(loop, self.nodes) >= 0]
         self.lumens = [loop for loop in self.mesh.loops if meshes.area(loop, self.nodes) < 0]
 
@@ -117,6 +85,23 @@ class Cells:
     def undeformed_shift(self):
         """Shift of the reference for which both centroids coincide: translations have no meaning in periodic tissue."""
         return (self.x - self.nodes).mean(axis=0)
+
+    @property
+    def outer_of(self):
+        """Outer edges of each cell."""
+        loops = {}
+        for loop in self.outer:
+            loops.setdefault(int(self.mesh.groups[loop[0, 3]]), []).append(loop)
+        return {cell: np.vstack(of) for cell, of in loops.items()}
+
+    def centres(self):
+        """Centroids of all cells [cell, 2], lumens included."""
+        centres = np.zeros((1 + self.mesh.groups.max(), 2))
+        for cell, edges in self.outer_of.items():
+            a, b = (self.x[edges[:, [k, k + 1]]].reshape(-1, 2) for k in (0, 1))  # chords of both halves of an edge
+            cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+            centres[cell] = (cross @ (a + b)) / (3 * cross.sum())
+        return centres
 
     def images(self, view):
         """Shifts of the images that are seen, the RVE itself last, so that it lies on top."""
@@ -140,8 +125,9 @@ def _shifted(path, shift):
     return type(path)(path.vertices + shift, path.codes) if len(path.vertices) else path
 
 
-def draw(view, cells, norm, gaps, pressure, undeformed=True):
-    """Lumens, walls with their field, outlines; interfaces by the scales `gaps` and `pressure`, which states share."""
+def draw(view, cells, norm, gaps, pressure, force, undeformed=True):
+    """Lumens, walls with their field, outlines; what is between cells by the scales `gaps`, `pressure` and `force`, which
+    states share."""
     axes, images = view.axes, cells.images(view)
     thickness = cells.thickness() * view.scale
     thin = thickness.min(initial=np.inf) < THINNEST_WALL  # lumens' outlines would be in the middle of the wall
@@ -166,19 +152,46 @@ def draw(view, cells, norm, gaps, pressure, undeformed=True):
         axes.add_artist(PathPatch(_shifted(outer, shift), facecolor="none", edgecolor=ink, zorder=2.1,
                                  linewidth=min(line, 0.5 if fade else 0.9)))
     if undeformed:
-        outline = meshes.path(_border(cells), cells.nodes + cells.undeformed_shift)
-        axes.add_artist(PathPatch(outline, facecolor="none", edgecolor=RED, linewidth=0.9, linestyle=DASHES, zorder=3))
-    if cells.interface:
-        for shift, _ in parts:
-            _interface(view, cells.interface, shift, min(WIDEST_LAMELLA, 1.6 * line), gaps, pressure)
+        for loop in _border(cells):
+            axes.add_artist(PathPatch(Path(loop + cells.undeformed_shift, closed=True), facecolor="none", edgecolor=RED,
+                                      linewidth=0.9, linestyle=DASHES, zorder=3))
+    for shift, fade in parts if cells.interface else []:
+        interface.draw(view, cells.interface, shift, min(WIDEST_LAMELLA, 1.6 * line), gaps, pressure)
+        if cells.forces:
+            cells.forces.draw(view, shift, fade, force)
+
+
+def _corners(loop, x):
+    """Points [n, 2] around a cell at rest: where air rounds a corner, the corner itself is put between its ends."""
+    a, m, b = (x[loop[:, k]] for k in range(3))
+    straight = np.flatnonzero(is_straight(a, m, b))
+    points = []
+    for i, j in zip(straight, np.roll(straight, -1)):
+        points.append(a[i:i + 1])
+        if (i + 1) % len(loop) != j:
+            steps = np.column_stack([b[i] - a[i], a[j] - b[j]])
+            points.append(np.array([b[i], a[i] + (b[i] - a[i]) * np.linalg.solve(steps, b[j] - a[i])[0]]))
+    return np.concatenate(points) if points else a
 
 
 def _border(cells):
-    """Edges of the undeformed RVE as a whole: outer walls on which no other cell's lies."""
-    edges = np.vstack(cells.outer)
-    middle = np.round(cells.nodes[edges[:, 1]], 6)
-    _, where, count = np.unique(middle, axis=0, return_inverse=True, return_counts=True)
-    return edges[count[np.ravel(where)] == 1]
+    """Outline at rest of the RVE as a whole: edges of cells on which no other one's lies, but those around air within."""
+    around = [_corners(loop, cells.nodes) for loop in cells.outer]
+    start, end = np.vstack(around), np.vstack([np.roll(points, -1, axis=0) for points in around])
+    _, where, count = np.unique(np.round(start + end, 6), axis=0, return_inverse=True, return_counts=True)
+    start, end = (points[count[np.ravel(where)] == 1] for points in (start, end))
+    places = np.unique(np.round(np.vstack([start, end]), 6), axis=0, return_inverse=True)[1].ravel().tolist()
+    starts, ends = places[:len(start)], places[len(start):]
+    follows, unused, loops = dict(zip(starts, range(len(start)))), set(range(len(start))), []
+    while unused:
+        k, loop = min(unused), []
+        while k in unused:
+            unused.remove(k)
+            loop.append(start[k])
+            k = follows.get(ends[k])
+        loops.append(np.array(loop + loop[:1]))
+    area = lambda x: (x[:-1, 0] * x[1:, 1] - x[1:, 0] * x[:-1, 1]).sum()
+    return [loop for loop in loops if area(loop) > 0]
 
 
 def _widen(axes, cells, thickness, norm, shift, cmap):
@@ -202,72 +215,6 @@ def _curve(edge, x):
     t = np.linspace(0, 1, 5)[:, None]
     a, m, b = x[edge[0]], x[edge[1]], x[edge[2]]
     return (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * m + t * (2 * t - 1) * b
-
-
-# ---- interfaces ----
-
-def _interface(view, i, shift, width, gaps, pressure):
-    if pressure > 0:
-        _ribbons(view, i, shift, CASING * width if i.has_lamella else 0, pressure)
-    if i.has_lamella:
-        _lamella(view, i, shift, width)
-    _gaps(view, i, shift, gaps)
-    if i.has_lamella:
-        _threads(view, i, shift)
-
-
-def _ribbons(view, i, shift, line, pressure):
-    """Along one edge of the ribbon and back along the other; as much wider than zero as the lamella's line."""
-    x = i.start + shift
-    along = np.empty_like(x)
-    along[:, 1:-1] = x[:, 2:] - x[:, :-2]
-    along[:, 0], along[:, -1] = x[:, 1] - x[:, 0], x[:, -1] - x[:, -2]
-    along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-30)
-    normal = np.stack([-along[..., 1], along[..., 0]], axis=2)
-    half = 0.5 * (np.where(i.pressure > 0, line, 0) + WIDEST_RIBBON * i.pressure / pressure) / view.scale
-    edges = np.concatenate([x + normal * half[..., None], (x - normal * half[..., None])[:, ::-1]], axis=1)
-    pressed = (i.pressure > 0).any(axis=1)
-    view.axes.add_artist(PolyCollection(edges[pressed], facecolors=PRESSURE, edgecolors="none", zorder=4))
-
-
-def _gaps(view, i, shift, gaps):
-    with np.errstate(invalid="ignore"):
-        open_ = i.gap[:, :-1] + i.gap[:, 1:] > 2 * VISIBLE_GAP  # false also where a sample faces no wall
-    strips = np.stack([i.start[:, :-1], i.start[:, 1:], i.to[:, 1:], i.to[:, :-1]], axis=2)[open_] + shift
-    colours = GAPS(gaps(0.5 * (i.gap[:, :-1] + i.gap[:, 1:])[open_]))
-    view.axes.add_artist(PolyCollection(strips, facecolors=colours, edgecolors=colours, linewidths=THINNEST_GAP,
-                                            joinstyle="round", zorder=6))
-
-
-def _stretch(view, i):
-    """Points on the page between the sides of the lamella at each sample; 0: it is between walls that are not apart."""
-    with np.errstate(invalid="ignore"):
-        return np.where(i.gap > VISIBLE_GAP, np.linalg.norm(i.across - i.start, axis=2) * view.scale, 0)
-
-
-def _lamella(view, i, shift, width):
-    """The line along the faces; nothing where the gap shows that it is broken, or threads are drawn."""
-    stretch, broken = _stretch(view, i), 0.5 * (i.broken[:, 1:] + i.broken[:, :-1])
-    longest = np.maximum(stretch[:, 1:], stretch[:, :-1])
-    drawn = ~((longest >= SHORTEST_THREAD) | ((longest > 0) & (broken > HOLDS)))
-    pieces = np.stack([i.start[:, :-1], i.start[:, 1:]], axis=2)[drawn] + shift
-    for colours, wide in ((DARK, CASING * width), (LAMELLA(broken[drawn]), width)):
-        view.axes.add_artist(LineCollection(pieces, colors=colours, linewidths=wide, capstyle="round", zorder=5))
-
-
-def _threads(view, i, shift):
-    """Across the gaps, as far apart as they are told apart."""
-    stretch, lines, colours = _stretch(view, i), [], []
-    at = view.points(i.start)
-    for face in range(len(i.gap)):
-        last = None
-        for k in np.flatnonzero((stretch[face] >= SHORTEST_THREAD) & (i.broken[face] <= HOLDS)):
-            if last is not None and np.hypot(*(at[face, k] - last)) < THREAD_DISTANCE:
-                continue
-            last = at[face, k]
-            lines.append(np.stack([i.start[face, k], i.across[face, k]]) + shift)
-            colours.append(LAMELLA(i.broken[face, k]))
-    view.axes.add_artist(LineCollection(lines, colors=colours, linewidths=THREAD, zorder=7))
 
 
 # ---- below a view ----
@@ -312,8 +259,18 @@ class Key:
         self.axes.plot([self.right - wide - 23, self.right - wide - 4], [self.y, self.y], color=RED, linewidth=0.9,
                        linestyle=DASHES)
 
-    def interface(self, pressure, is_open, has_lamella):
-        """Ribbons and lamella; that of the lamella is in a row of its own where it has no room."""
+    def forces(self, largest):
+        """What pulls cells together, and what presses them; the largest one, N/m."""
+        self.x += self.text("force between cells:") + 6
+        for words, colour in (("tension", PULL), ("compression", PRESSURE)):
+            self.axes.plot([self.x, self.x + 19], [self.y, self.y], color=colour, linewidth=WIDEST_RIBBON / 2,
+                           solid_capstyle="butt")
+            self.x += 23
+            self.x += self.text(words) + 8
+        self.x += self.text(f"up to {number(largest)} N/m") + 12
+
+    def contact(self, pressure, is_open, has_lamella):
+        """Ribbons."""
         words = "no contact"
         if pressure > 0:
             self.axes.add_patch(Polygon([(self.x, self.y), (self.x + 19, self.y - WIDEST_RIBBON / 2),
@@ -322,10 +279,9 @@ class Key:
             words = f"contact pressure, up to {number(pressure)} MPa{more}"
             self.x += 23
         self.x += self.text(words) + 12
-        if has_lamella:
-            self._lamella()
 
-    def _lamella(self):
+    def lamella(self):
+        """In a row of its own where it has no room."""
         length, height = 42, 3.6
         if self.x + 58 + 42 + 30 > self.right:
             self.row()
@@ -343,7 +299,8 @@ class Key:
 # ---- a window that states share ----
 
 class Frame:
-    """Window, colours and scales of one state or several: norm of the field, gaps and pressure of the interfaces."""
+    """Window, colours and scales of one state or several: norm of the field, gaps, and pressure of the interfaces or forces
+    of cells."""
 
     def __init__(self, several, label, options, reference=False):
         boxes = [c.box for c in several]
@@ -360,7 +317,8 @@ class Frame:
         widest = max((i.widest for i in faces), default=0)
         self.is_open = widest > VISIBLE_GAP
         self.gaps = Range([], {"range": (0, max(widest, VISIBLE_GAP))})
-        self.pressure = max((i.largest_pressure for i in faces), default=0)
+        self.force = max((c.forces.largest for c in several if c.forces), default=0)
+        self.pressure = 0 if self.force > 0 else max((i.largest_pressure for i in faces), default=0)
         self.has_lamella = any(i.has_lamella for i in faces)
         self.parts, self.is_periodic = bool(faces), any(c.is_periodic for c in several)
 
@@ -375,7 +333,7 @@ class Frame:
             bar(page, x + bar_width(self.norm), y, height, self.gaps, "gap (apothems)", GAPS)
 
     def draw(self, view, cells, undeformed=False):
-        draw(view, cells, self.norm, self.gaps, self.pressure, undeformed)
+        draw(view, cells, self.norm, self.gaps, self.pressure, self.force, undeformed)
 
     def key(self, page, view, um, right, undeformed=True):
         """Scale bar and legend below the view; um: micrometres of an apothem."""
@@ -389,4 +347,9 @@ class Frame:
             key.text(paler, align="right")
         if self.parts:
             key.row()
-            key.interface(self.pressure, self.is_open, self.has_lamella)
+            if self.force > 0:
+                key.forces(self.force)
+            else:
+                key.contact(self.pressure, self.is_open, self.has_lamella)
+            if self.has_lamella:
+                key.lamella()
