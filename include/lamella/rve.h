@@ -224,12 +224,14 @@ LAM_EXPORT PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, Pets
                                     counter-clockwise around its cell, with respect to the wall across
     normal_traction  [face][point]  traction of the lamella alone, without contact pressure, nominal (per reference
     shear_traction   [face][point]  length), in C1 + C2: >= 0, and with the sign of the slip
+    normal_force     [face]  integral of the normal traction by the Gauss points, per thickness, in C1 + C2 times apothem
 
   Jumps are those of the nodes; the others are interpolated linearly between Gauss points. PETSC_ERR_ARG_WRONGSTATE:
   the law of the interface is another one, which LamRVEGetInterfaceLaw tells.
 */
 typedef struct {
-  PetscReal *across, *damage, *broken, *opening, *slip, *normal_traction, *shear_traction; /* the caller's */
+  PetscReal *across, *damage, *broken, *opening, *slip, *normal_traction, *shear_traction,
+      *normal_force; /* the caller's */
 } LamRVELamella;
 LAM_EXPORT PetscErrorCode LamRVEGetInterfaceLaw(LamRVE rve, LamInterfaceLawType *law);
 LAM_EXPORT PetscErrorCode LamRVEGetLamella(LamRVE rve, LamRVEState state, const LamRVELamella *fields);

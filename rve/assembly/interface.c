@@ -130,6 +130,19 @@ static PetscReal Between(const PetscReal value[], PetscInt along, PetscReal s)
   return (1.0 - u) * value[next - 1] + u * value[next];
 }
 
+/* Gauss's rule along face f. */
+static PetscReal NormalForce(LamRVE rve, const LayerPoints *points, PetscInt f)
+{
+  const LamMesh *mesh = &rve->mesh;
+  const PetscReal *edge = &mesh->edge[rve->contact->faces[f].face * mesh->along];
+  PetscReal force = 0.0;
+
+  for (PetscInt p = 0; p < LAM_EDGE_POINTS * mesh->along; ++p)
+    force += edge[p / LAM_EDGE_POINTS] * LamEdgeWeight(p % LAM_EDGE_POINTS) *
+             points->value[NORMAL][LAM_EDGE_POINTS * mesh->along * f + p];
+  return force;
+}
+
 static void SampleFace(LamRVE rve, const LayerPoints *points, PetscInt f, const LamRVELamella *fields)
 {
   const LamRVEState state = points->state;
@@ -165,7 +178,10 @@ PetscErrorCode LamRVEGetLamella(LamRVE rve, LamRVEState state, const LamRVELamel
   PetscCall(PetscMalloc1(POINT_FIELDS * rve->layer->count, &points.value[0]));
   for (PetscInt k = 1; k < POINT_FIELDS; ++k) points.value[k] = points.value[0] + k * rve->layer->count;
   LamLayerVisitPoints(rve, state->load.F, state->y, KeepPoint, &points);
-  for (PetscInt f = 0; f < rve->contact->face_count; ++f) SampleFace(rve, &points, f, fields);
+  for (PetscInt f = 0; f < rve->contact->face_count; ++f) {
+    SampleFace(rve, &points, f, fields);
+    if (fields->normal_force) fields->normal_force[f] = NormalForce(rve, &points, f);
+  }
   PetscCall(PetscFree(points.value[0]));
   PetscFunctionReturn(0);
 }

@@ -70,7 +70,7 @@ static PetscErrorCode DefaultOutput(const char input[], size_t size, char output
 typedef struct {
   const char *output, *field, *map, *angle, *suction, *turgor, *title, *size, *range, *x, *y;
   PetscInt state, dpi;
-  PetscBool strip, film, no_title, quiet;
+  PetscBool strip, forces, film, no_title, quiet;
   PetscReal accuracy;
 } Request;
 
@@ -103,8 +103,8 @@ static PetscErrorCode Draw(const char input[], const Request *r, int *exit_statu
 
   PetscFunctionBeginUser;
   if (!r->output) PetscCall(DefaultOutput(input, sizeof(name), name));
-  o = json_pack("{s:s, s:[s], s:b, s:b, s:b}", "input", input, "outputs", r->output ? r->output : name, "strip",
-                r->strip, "film", r->film, "quiet", r->quiet);
+  o = json_pack("{s:s, s:[s], s:b, s:b, s:b, s:b}", "input", input, "outputs", r->output ? r->output : name, "strip",
+                r->strip, "forces", r->forces, "film", r->film, "quiet", r->quiet);
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: a name is not in UTF-8", input);
   if (r->state >= 0) json_object_set_new(o, "state", json_integer(r->state));
   if (r->state == LAM_STATE_LAST) json_object_set_new(o, "state", json_string("last"));
@@ -136,6 +136,8 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
       {0, "field", LAM_OPTION_TEXT, "NAME", "field that gives the colours (docs/reference/pictures.md lists them)",
        &r.field},
       {0, "strip", LAM_OPTION_FLAG, NULL, "up to eight states beside each other, with one colour scale", &r.strip},
+      {0, "forces", LAM_OPTION_FLAG, NULL,
+       "of an RVE file whose cells can part: lines between cells, as wide as the normal force is large", &r.forces},
       {0, "film", LAM_OPTION_FLAG, NULL,
        "of a process: a page (PDF) or a numbered file for each state whose cells, or body, the file has", &r.film},
       {0, "map", LAM_OPTION_TEXT, "MAP.h5", "of a process: its way over this map of failure", &r.map},
@@ -162,10 +164,9 @@ PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
       args,
-      "plot FILE.h5|.json [-o FIG.png|.svg|.pdf] [--state N|last | --strip] [--field NAME] [--film]\n"
-      "                    [--map MAP.h5] [--angle ANGLE] [--suction PRESSURE | --turgor "
-      "PRESSURE] [--accuracy SHARE]\n"
-      "                    [--size WIDTHxHEIGHT] [--title TEXT | --no-title] [--range LOW,HIGH]\n"
+      "plot FILE.h5|.json [-o FIG.png|.svg|.pdf] [--state N|last | --strip] [--field NAME] [--forces]\n"
+      "                    [--film] [--map MAP.h5] [--angle ANGLE] [--suction PRESSURE | --turgor PRESSURE]\n"
+      "                    [--accuracy SHARE] [--size WIDTHxHEIGHT] [--title TEXT | --no-title] [--range LOW,HIGH]\n"
       "                    [--x LOW,HIGH] [--y LOW,HIGH] [--dpi N] [--quiet]",
       "Draws what the file holds, with Python and its package matplotlib.", options, 1, &input, &done, exit_status));
   if (done) PetscFunctionReturn(0);

@@ -82,8 +82,9 @@ static PetscErrorCode WriteInterface(LamRecordWriter writer, const char group[],
 
 /* Writes the lamella at these samples; other laws have none. */
 static PetscErrorCode WriteLamella(LamRecordWriter writer, const char group[], LamRVE rve, LamRVEState state,
-                                   PetscReal MPa)
+                                   const LamScales *scales)
 {
+  const PetscReal MPa = scales->stress * 1e-6, mm = scales->length * 1e3;
   LamRVELamella lamella;
   LamInterfaceLawType law;
   PetscInt dims[3] = {0, 0, 2}, n;
@@ -95,11 +96,13 @@ static PetscErrorCode WriteLamella(LamRecordWriter writer, const char group[], L
   n = dims[0] * dims[1];
   PetscCall(PetscMalloc7(2 * n, &lamella.across, n, &lamella.damage, n, &lamella.broken, n, &lamella.opening, n,
                          &lamella.slip, n, &lamella.normal_traction, n, &lamella.shear_traction));
+  PetscCall(PetscMalloc1(dims[0], &lamella.normal_force));
   PetscCall(LamRVEGetLamella(rve, state, &lamella));
   for (PetscInt i = 0; i < n; i++) {
     lamella.normal_traction[i] *= MPa;
     lamella.shear_traction[i] *= MPa;
   }
+  for (PetscInt f = 0; f < dims[0]; f++) lamella.normal_force[f] *= MPa * mm;
   PetscCall(WriteReals(writer, group, "interface/across", 3, dims, lamella.across, "apothem"));
   PetscCall(WriteReals(writer, group, "interface/damage", 2, dims, lamella.damage, "1"));
   PetscCall(WriteReals(writer, group, "interface/broken", 2, dims, lamella.broken, "1"));
@@ -107,6 +110,8 @@ static PetscErrorCode WriteLamella(LamRecordWriter writer, const char group[], L
   PetscCall(WriteReals(writer, group, "interface/slip", 2, dims, lamella.slip, "apothem"));
   PetscCall(WriteReals(writer, group, "interface/normal_traction", 2, dims, lamella.normal_traction, "MPa"));
   PetscCall(WriteReals(writer, group, "interface/shear_traction", 2, dims, lamella.shear_traction, "MPa"));
+  PetscCall(WriteReals(writer, group, "interface/normal_force", 1, dims, lamella.normal_force, "N/mm"));
+  PetscCall(PetscFree(lamella.normal_force));
   PetscCall(PetscFree7(lamella.across, lamella.damage, lamella.broken, lamella.opening, lamella.slip,
                        lamella.normal_traction, lamella.shear_traction));
   PetscFunctionReturn(0);
@@ -149,7 +154,7 @@ PetscErrorCode LamRVEWriteFields(LamRecordWriter writer, const char group[], Lam
   PetscCall(WriteReals(writer, group, "wall_stress", 1, dims, stress, "MPa"));
   PetscCall(PetscFree3(x, fibre, stress));
   PetscCall(WriteInterface(writer, group, rve, state, MPa));
-  PetscCall(WriteLamella(writer, group, rve, state, MPa));
+  PetscCall(WriteLamella(writer, group, rve, state, scales));
   PetscFunctionReturn(0);
 }
 

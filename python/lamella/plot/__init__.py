@@ -25,7 +25,7 @@ _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database"
 _TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file"),
           "realisations": ("realisations", "what realisations tell")}
 _OPTIONS = {"title", "size", "range", "x", "y"}
-_CHOICES = {"state", "field", "strip", "film", "map", "angle", "suction", "turgor", "accuracy"}
+_CHOICES = {"state", "field", "strip", "forces", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
 
 class _Options(dict):
@@ -73,7 +73,7 @@ def _page(kind, path, options, page):
                               "plot draws rve, fe2, database, map and process files"))
         if source.kind != "database":
             import_module(".tables", __name__).refuse(path, options)
-        for name, kinds in (("strip", ("rve", "fe2", "process")), ("film", ("fe2", "process")), ("map", ("process",))):
+        for name, kinds in (("strip", ("rve", "fe2", "process")), ("forces", ("rve",)), ("film", ("fe2", "process")), ("map", ("process",))):
             if options.get(name) and source.kind not in kinds:
                 raise InputError(f"{path}: is of kind \"{source.kind}\"; --{name} draws files of {', '.join(kinds)}")
         drawn = import_module(f".{module}", __name__).draw(source, page, **options)
@@ -95,10 +95,11 @@ def draw(path, **options):
     return _draw(None, path, options)
 
 
-def rve(path, state=None, field=None, strip=False, **options):
+def rve(path, state=None, field=None, strip=False, forces=False, **options):
     """The tissue of `rve -o` at a state (its number, "last", None: the peak load), coloured by `field` (wall_stress,
-    fibre_stretch), and the effective stress over the states. strip: up to eight states beside each other."""
-    return _draw("rve", path, {"state": state, "field": field, "strip": strip, **options})
+    fibre_stretch), and the effective stress over the states. strip: up to eight states beside each other. forces: lines
+    between cells as wide as the normal force on their face is large."""
+    return _draw("rve", path, {"state": state, "field": field, "strip": strip, "forces": forces, **options})
 
 
 def fe2(path, state=None, field=None, strip=False, film=False, **options):

@@ -3,6 +3,7 @@ import numpy as np
 
 from .. import InputError
 from . import curves
+from .interface import Forces
 from .page import HEIGHT, WIDTH, Page, number, ratio, settle, styled
 from .strip import alone, chosen, strip as draw_strip
 from .tissue import Cells, Frame, field_of, View
@@ -47,40 +48,48 @@ def _title(source, k, highest):
     return text + ("  (unstable)" if r.status == "unstable" else "")
 
 
-def _cells(source, k, field):
-    return Cells(source, "mesh", f"fields/{source.keys[k]}", field, source.parts, source.responses.F[k])
+def _cells(source, k, field, forces):
+    cells = Cells(source, "mesh", f"fields/{source.keys[k]}", field, source.parts, source.responses.F[k])
+    if forces:
+        if not source.parts:
+            raise InputError(f"--forces: cells of {source.path} are bonded: forces between them are known of "
+                             "interface.law contact and lamella")
+        cells.forces = Forces(cells, source.apothem, source.responses.cohesion[k] / 1e6)
+    return cells
 
 
 @styled
-def draw(source, options, state=None, field=None, strip=False):
+def draw(source, options, state=None, field=None, strip=False, forces=False):
     """The tissue at a state, coloured by `field` (wall_stress, fibre_stretch), and the effective stress over the
-    states; strip: up to eight states beside each other."""
+    states; strip: up to eight states beside each other. forces: lines between cells in place of contact pressure and of the
+    undeformed outline."""
     name, label = field_of(field)
     k, highest = _choose(source, state)
     if strip:
         alone(state)
-        return _strip(source, name, label, highest, options)
+        return _strip(source, name, label, highest, forces, options)
     page = Page(WIDTH, HEIGHT, options)
-    cells = _cells(source, k, name)
-    frame = Frame([cells], label, options, reference=True)
+    cells = _cells(source, k, name, forces)
+    frame = Frame([cells], label, options, reference=not forces)
     page.head(_title(source, k, highest), options)
     width, height = page.size
     wide, high = 0.56 * width - frame.bars, height - 51 - (10 if frame.parts else 0)
     view = View(page, 9, 25.2, wide, high, frame.box)
     frame.draw_bars(page, 9 + wide, 25.2, high)
-    frame.draw(view, cells, undeformed=True)
-    frame.key(page, view, source.apothem * 1e6, 9 + wide + (frame.bars if frame.is_open else 0))
+    frame.draw(view, cells, undeformed=not forces)
+    frame.key(page, view, source.apothem * 1e6, 9 + wide + (frame.bars if frame.is_open else 0),
+              undeformed=not forces)
     left = 0.56 * width + 26
     axes = page.chart(left, 21, width - left - 8, height - 24)
     curves.stress(page, axes, source.responses, source.keys, source.object("test"), options)
     return settle(page)
 
 
-def _strip(source, name, label, highest, options):
+def _strip(source, name, label, highest, forces, options):
     load = curves.LoadAxis(source.responses, source.keys)
     states = [k for k in range(len(source.keys)) if source.has(f"fields/{source.keys[k]}/x")]
     states = [states[i] for i in chosen(len(states), int(np.searchsorted(states, highest or 0)))]
-    cells = [_cells(source, k, name) for k in states]
+    cells = [_cells(source, k, name, forces) for k in states]
     frame = Frame(cells, label, options)
 
     def title(k):
