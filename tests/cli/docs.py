@@ -1,4 +1,5 @@
-"""Checks of the documents, for docs.sh: python3 docs.py LAMELLA SOURCE_DIR, in an empty folder. Prints what is wrong."""
+"""Checks of the documents, for docs.sh: python3 docs.py LAMELLA SOURCE_DIR [DOCUMENT], in an empty folder; of DOCUMENT the
+examples alone. Prints what is wrong."""
 import json
 import os
 import re
@@ -184,16 +185,19 @@ def check_examples(document):
         fail(document, f"has {count} commands")
 
 
-for document in [*source.glob("*.md"), *(source / "docs").rglob("*.md")]:
-    check_links(document)
-check_citations()
-check_reading_list()
-check_options()
-for document in ("README.md", "docs/tutorial.md"):
+documents = sys.argv[3:]
+if not documents:
+    for document in [*source.glob("*.md"), *(source / "docs").rglob("*.md")]:
+        check_links(document)
+    check_citations()
+    check_reading_list()
+    check_options()
+for document in documents or ("README.md", "docs/tutorial.md"):
     folder = Path(document).stem
     os.makedirs(f"{folder}/build")
     os.symlink(lamella, f"{folder}/build/lamella")
-    os.symlink(source / "tests", f"{folder}/tests")
+    for name in ("tests", "examples"):
+        os.symlink(source / name, f"{folder}/{name}")
     os.chdir(folder)
     check_examples(document)
     if document == "README.md":
