@@ -107,12 +107,12 @@ static inline PetscInt LamWallsFirstNode(const LamWalls *walls, PetscInt loop)
 {
   return LamMeshFirstRing(walls->mesh, loop / 2) + LamMeshFirstRing(walls->mesh, (loop + 1) / 2);
 }
-/* Mesh node i along a loop, at most one round before its start or behind its end. */
+/* Mesh node i along a loop, which goes on before its start and behind its end. */
 static inline PetscInt LamWallsNodeAt(const LamWalls *walls, PetscInt loop, PetscInt i)
 {
   const PetscInt n = LamWallsNodes(walls, loop);
 
-  return walls->node[LamWallsFirstNode(walls, loop) + (i < 0 ? i + n : i >= n ? i - n : i)];
+  return walls->node[LamWallsFirstNode(walls, loop) + (i >= 0 && i < n ? i : (i % n + n) % n)];
 }
 /* Mesh node k = 0..LAM_SPAN_NODES - 1 of a span. */
 static inline PetscInt LamWallsNode(const LamWalls *walls, PetscInt loop, PetscInt span, PetscInt k)
