@@ -2,7 +2,8 @@
 
     python3 draw_labels.py TISSUE.json LABELS.png WIDTH HEIGHT PIXEL
 
-width and height in pixels, the edge of a pixel in the unit of the file. Periodic images are cells of their own; air is 0.
+width and height in pixels, the edge of a pixel in the unit of the file. Periodic images are cells of their own; air
+is 0.
 """
 import sys
 

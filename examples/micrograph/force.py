@@ -14,4 +14,5 @@ with lamella.Result(sys.argv[1]) as result:
     for state, response in zip(result.states(), result.responses):
         broken = result.fields(state)["interface/broken"].min(axis=1) > 0.999
         pairs = ", ".join(f"{cell}-{other}" for cell, _, other in faces[broken])
-        print(f"{response.F[1, 1]:7.2f}  {width * response.P[1, 1]:10.3f}  {broken.sum()} of {len(faces)}  {pairs}".rstrip())
+        force = width * response.P[1, 1]
+        print(f"{response.F[1, 1]:7.2f}  {force:10.3f}  {broken.sum()} of {len(faces)}  {pairs}".rstrip())

@@ -73,7 +73,8 @@ def _page(kind, path, options, page):
                               "plot draws rve, fe2, database, map and process files"))
         if source.kind != "database":
             import_module(".tables", __name__).refuse(path, options)
-        for name, kinds in (("strip", ("rve", "fe2", "process")), ("forces", ("rve",)), ("film", ("fe2", "process")), ("map", ("process",))):
+        for name, kinds in (("strip", ("rve", "fe2", "process")), ("forces", ("rve",)),
+                            ("film", ("fe2", "process")), ("map", ("process",))):
             if options.get(name) and source.kind not in kinds:
                 raise InputError(f"{path}: is of kind \"{source.kind}\"; --{name} draws files of {', '.join(kinds)}")
         drawn = import_module(f".{module}", __name__).draw(source, page, **options)

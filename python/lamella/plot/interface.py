@@ -47,10 +47,12 @@ class Interface:
         self.has_lamella = source.has(f"{fields}/interface/broken")
         vectors, numbers = [self.start, self.to], [self.pressure]
         if self.has_lamella:
-            self.across, self.broken, self.force = map(read, ("across", "broken", "normal_force"))
+            self.across, self.broken = map(read, ("across", "broken"))
             vectors, numbers = [*vectors, self.across], [*numbers, self.broken]
+        self.force = read("normal_force") if source.has(f"{fields}/interface/normal_force") else None  #: of the lamella
         self.faces = source.array(f"{mesh}/interface_faces", len(self.gap), 3)
-        self.edges = self._edges(elements, cell) if len(shape) == 2 and np.isin(self.faces[:, ::2], cell).all() else None
+        known = len(shape) == 2 and np.isin(self.faces[:, ::2], cell).all()
+        self.edges = self._edges(elements, cell) if known else None
         if len(shape) != 2 or any(v.shape != shape + (2,) for v in vectors) or any(v.shape != shape for v in numbers) \
                 or self.edges is None:
             raise InputError(f"{source.path}: {fields}/interface is damaged")
@@ -73,8 +75,8 @@ class Interface:
 
 
 class Forces:
-    """Normal forces between cells, one for each face: force [face], N per m of thickness, tension positive; lines [face,
-    2, 2]: from centroid to centroid, of the image that is across."""
+    """Normal forces between cells, one for each face: force [face], N per m of thickness, tension positive; lines
+    [face, 2, 2]: from centroid to centroid, of the image that is across."""
 
     def __init__(self, cells, apothem, cohesion):
         """cohesion in MPa."""
@@ -82,7 +84,7 @@ class Forces:
         present = np.linalg.norm(np.diff(i.start, axis=1), axis=2)
         mean = lambda values: (values[:, 1:] + values[:, :-1]) / 2
         self.force = 1e6 * apothem * ((cohesion - mean(i.pressure)) * present).sum(axis=1)
-        if i.has_lamella:
+        if i.force is not None:
             self.force += 1e3 * i.force
         centre = cells.centres()
         to = centre[i.faces[:, 2]] + self._images(cells) @ cells.F[:2, :2].T

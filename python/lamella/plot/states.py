@@ -54,6 +54,8 @@ def _cells(source, k, field, forces):
         if not source.parts:
             raise InputError(f"--forces: cells of {source.path} are bonded: forces between them are known of "
                              "interface.law contact and lamella")
+        if cells.interface.has_lamella and cells.interface.force is None:
+            raise InputError(f"--forces: {source.path} is older than this program and has none: solve it again")
         cells.forces = Forces(cells, source.apothem, source.responses.cohesion[k] / 1e6)
     return cells
 
@@ -61,8 +63,8 @@ def _cells(source, k, field, forces):
 @styled
 def draw(source, options, state=None, field=None, strip=False, forces=False):
     """The tissue at a state, coloured by `field` (wall_stress, fibre_stretch), and the effective stress over the
-    states; strip: up to eight states beside each other. forces: lines between cells in place of contact pressure and of the
-    undeformed outline."""
+    states; strip: up to eight states beside each other. forces: lines between cells in place of contact
+    pressure and of the undeformed outline."""
     name, label = field_of(field)
     k, highest = _choose(source, state)
     if strip:

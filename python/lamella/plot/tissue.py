@@ -126,8 +126,8 @@ def _shifted(path, shift):
 
 
 def draw(view, cells, norm, gaps, pressure, force, undeformed=True):
-    """Lumens, walls with their field, outlines; what is between cells by the scales `gaps`, `pressure` and `force`, which
-    states share."""
+    """Lumens, walls with their field, outlines; what is between cells by the scales `gaps`, `pressure` and `force`,
+    which states share."""
     axes, images = view.axes, cells.images(view)
     thickness = cells.thickness() * view.scale
     thin = thickness.min(initial=np.inf) < THINNEST_WALL  # lumens' outlines would be in the middle of the wall
@@ -175,7 +175,7 @@ def _corners(loop, x):
 
 
 def _border(cells):
-    """Outline at rest of the RVE as a whole: edges of cells on which no other one's lies, but those around air within."""
+    """Outline at rest of the RVE as a whole: edges of cells on which no other one's lies, but not around air within."""
     around = [_corners(loop, cells.nodes) for loop in cells.outer]
     start, end = np.vstack(around), np.vstack([np.roll(points, -1, axis=0) for points in around])
     _, where, count = np.unique(np.round(start + end, 6), axis=0, return_inverse=True, return_counts=True)
@@ -299,8 +299,8 @@ class Key:
 # ---- a window that states share ----
 
 class Frame:
-    """Window, colours and scales of one state or several: norm of the field, gaps, and pressure of the interfaces or forces
-    of cells."""
+    """Window, colours and scales of one state or several: norm of the field, gaps, and pressure of the interfaces or
+    forces of cells."""
 
     def __init__(self, several, label, options, reference=False):
         boxes = [c.box for c in several]
