@@ -59,32 +59,42 @@ static void PlaceFace(const LamOutline *outline, PetscInt k, LamMesh *mesh, Pets
   }
 }
 
-static PetscErrorCode PlaceCell(const LamMicrostructure *micro, PetscInt cell, LamMesh *mesh)
+static PetscErrorCode PlaceWalls(const LamMicrostructure *micro, PetscInt cell, const LamOutline *outline,
+                                 LamMesh *mesh)
 {
-  const PetscReal clearance = 2.0 * (1.0 - mesh->apothem);
-  LamOutline outline;
-
   PetscFunctionBeginUser;
-  PetscCall(LamOutlineCreate(mesh->tissue, cell, LamWallThickness(micro, cell), clearance, &outline));
-  for (PetscInt k = 0; k < outline.count; ++k) {
+  for (PetscInt k = 0; k < outline->count; ++k) {
     const PetscInt face = mesh->tissue->first[cell] + k, partner = mesh->tissue->partner[face];
     PetscReal flat[2];
 
-    mesh->length[face] = outline.length[k];
-    mesh->thickness[face] = outline.thickness[k];
-    LamOutlineFlat(&outline, k, flat);
+    mesh->length[face] = outline->length[k];
+    mesh->thickness[face] = outline->thickness[k];
+    LamOutlineFlat(outline, k, flat);
     PetscCheck(flat[0] < flat[1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "cell %d: air at both ends of face %d, %.3g apothems long, leaves nothing of it", (int)cell, (int)k,
-               (double)outline.length[k]);
+               (double)outline->length[k]);
     if (partner >= 0 && partner < face)
       MirrorEnds(mesh, partner, face);
     else
       PlaceEnds(micro->grading, flat, mesh, face);
     PetscCheck(mesh->flat[face][0] < mesh->flat[face][1], PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "%d elements along a face: with air at both its ends there must be 3 at least", (int)mesh->along);
-    PlaceFace(&outline, k, mesh, face);
+    PlaceFace(outline, k, mesh, face);
   }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PlaceCell(const LamMicrostructure *micro, PetscInt cell, LamMesh *mesh)
+{
+  const PetscReal clearance = 2.0 * (1.0 - mesh->apothem);
+  LamOutline outline;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamOutlineCreate(mesh->tissue, cell, LamWallThickness(micro, cell), clearance, &outline));
+  ierr = PlaceWalls(micro, cell, &outline, mesh);
   PetscCall(LamOutlineDestroy(&outline));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 

@@ -1,11 +1,11 @@
 #include "outline.h"
 
 #define LEAST                                                                                                          \
-  0.25                /* part of its usual length or radius to which an inner contour may shrink: elements of a Q2     \
-                         mesh then still have a quarter of their outer width */
-#define STRAIGHT 1e-2 /* radian: corners that turn less have no arc, and their mitre is the mean of both normals */
+  0.25                 /* part of its usual length or radius to which an inner contour may shrink: elements of a Q2    \
+                          mesh then still have a quarter of their outer width */
+#define STRAIGHT 1e-2  /* radian: corners that turn less have no arc, and their mitre is the mean of both normals */
 #define SHARPEST 0.175 /* radian: 10 degrees between two faces; elements along narrower mitres degenerate */
-#define PASSES 20     /* of thickening: each face that shrinks another one is met in the next pass */
+#define PASSES 20      /* of thickening: each face that shrinks another one is met in the next pass */
 
 static PetscInt Next(const LamOutline *o, PetscInt k)
 {
@@ -177,15 +177,16 @@ PetscErrorCode LamOutlineCreate(LamTissue tissue, PetscInt cell, PetscReal thick
                                 LamOutline *o)
 {
   const PetscInt n = tissue->first[cell + 1] - tissue->first[cell];
-  PetscReal radius;
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   *o = (LamOutline){.count = n};
   PetscCall(PetscCalloc4(n, &o->along, n, &o->angle, n, &o->turn, n, &o->setback));
   PetscCall(PetscCalloc4(n, &o->length, n, &o->thickness, n, &o->outer, n, &o->inner));
-  PetscCall(SetFaces(tissue, cell, thickness, o));
-  radius = Shrink(tissue, cell, clearance, o);
-  PetscCall(Thicken(cell, radius, o));
+  ierr = SetFaces(tissue, cell, thickness, o);
+  if (!ierr) ierr = Thicken(cell, Shrink(tissue, cell, clearance, o), o);
+  if (ierr) PetscCall(LamOutlineDestroy(o));
+  PetscCall(ierr);
   RoundCorners(tissue, cell, o);
   PetscFunctionReturn(0);
 }

@@ -201,10 +201,12 @@ PetscErrorCode LamRVEGetUnknowns(LamRVE rve, PetscInt *unknowns)
 PetscErrorCode LamRVECountUnknowns(const LamMicrostructure *micro, PetscInt *unknowns)
 {
   LamMesh mesh;
+  const PetscErrorCode ierr = LamMeshCreate(micro, &mesh);
   PetscInt pairs = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(LamMeshCreate(micro, &mesh));
+  if (ierr) PetscCall(LamMeshDestroy(&mesh));
+  PetscCall(ierr);
   for (PetscInt face = 0; face < mesh.tissue->faces; ++face) pairs += LamTissueIsSlave(mesh.tissue, face);
   *unknowns = 2 * (mesh.class_count - 1) + (LamCellsPart(micro->interface) ? pairs * (2 * mesh.along + 1) : 0);
   PetscCall(LamMeshDestroy(&mesh));
