@@ -99,6 +99,7 @@ static void Weigh(const LamMesh *mesh, LamWalls *walls)
         for (PetscInt i = 0; i < LAM_SPAN_NODES; ++i)
           for (PetscInt d = 0; d < 2; ++d)
             c[a][d] += walls->of[span].share[a][i] * mesh->X[2 * LamWallsNode(walls, loop, span, i) + d];
+      for (PetscInt d = 0; d < 2; ++d) walls->rest[walls->first[loop] + span][d] = 0.5 * (c[1][d] + c[2][d]);
       for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
         LamSplineSum(walls->at[q].dN, (const PetscReal(*)[2])c, tau);
         walls->weight[LAM_TOUCH_POINTS * (walls->first[loop] + span) + q] =
@@ -137,6 +138,7 @@ PetscErrorCode LamWallsCreate(const LamMicrostructure *micro, const LamMesh *mes
   all = walls->first[walls->loops];
   PetscCall(PetscMalloc5(LAM_TOUCH_POINTS * all, &walls->weight, mesh->cell_count, &walls->thickness, all, &walls->x,
                          walls->most, &walls->of, walls->most, &walls->ended));
+  PetscCall(PetscMalloc1(all, &walls->rest));
   PetscCall(PetscCalloc1(all, &walls->gone));
   PetscCall(PetscMalloc3(all, &walls->span, walls->loops, &walls->box, FirstGroup(walls, walls->loops), &walls->group));
   for (PetscInt c = 0; c < mesh->cell_count; ++c) walls->thickness[c] = DEEPEST;
@@ -158,6 +160,7 @@ PetscErrorCode LamWallsDestroy(LamWalls *walls)
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(walls->first, walls->node));
   PetscCall(PetscFree5(walls->weight, walls->thickness, walls->x, walls->of, walls->ended));
+  PetscCall(PetscFree(walls->rest));
   PetscCall(PetscFree(walls->gone));
   PetscCall(PetscFree3(walls->span, walls->box, walls->group));
   PetscFunctionReturn(0);
@@ -343,6 +346,20 @@ static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2]
   return (X[0] - a[0][0]) * a[1][0] + (X[1] - a[0][1]) * a[1][1];
 }
 
+/* Whether two spans of a loop belong together: they follow each other, or wall lies between them at rest, as on both
+   sides of an acute corner. */
+static inline PetscBool AreJoined(const LamWalls *walls, PetscInt loop, PetscInt i, PetscInt j)
+{
+  const PetscInt a = walls->first[loop] + i, b = walls->first[loop] + j;
+  PetscReal reach = walls->thickness[loop / 2];
+
+  if (Between(LamWallsSpans(walls, loop), i, j) < walls->apart) return PETSC_TRUE;
+  /* from the middles to the ends of both spans, whose points have equal weights, about */
+  reach += 0.5 * LAM_TOUCH_POINTS * (walls->weight[LAM_TOUCH_POINTS * a] + walls->weight[LAM_TOUCH_POINTS * b]);
+  return (PetscBool)(PetscSqr(walls->rest[a][0] - walls->rest[b][0]) + PetscSqr(walls->rest[a][1] - walls->rest[b][1]) <
+                     reach * reach);
+}
+
 /* Whether some other span of the loop is nearer to a point that lies at a depth behind span j: the point is behind that
    span without having entered it, as on the next wall around an acute corner. */
 static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, PetscReal depth)
@@ -367,12 +384,12 @@ static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, Petsc
 }
 
 /* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
-   same cell. In another cell it counts down to DEEPEST, where no other wall of that cell is nearer. */
+   same cell. In another cell it counts down to DEEPEST, if no other wall of that cell is nearer. */
 static PetscBool Counts(const Pair *p, const PetscReal X[2], PetscInt j, PetscReal gap)
 {
   if (!(gap < p->width)) return PETSC_FALSE;
   if (p->itself) return (PetscBool)(gap >= -p->walls->thickness[p->other / 2]);
-  return (PetscBool)(gap >= -p->width || (gap >= -DEEPEST && !IsNearer(p, X, j, -gap)));
+  return (PetscBool)(gap >= 0.0 || (gap >= -DEEPEST && !IsNearer(p, X, j, -gap)));
 }
 
 /* Points of one span against one span of the other loop. */
@@ -420,8 +437,8 @@ static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
     for (PetscInt j = GROUP * b; j < end[1]; ++j) {
       const LamWallSpan *other = &walls->span[first[1] + j];
 
-      if (!walls->gone[first[1] + j] && !(p->itself && Between(n[0], i, j) < walls->apart) &&
-          Meet(&near, &other->box) && !IsBeyond(p, other, here.low, here.high))
+      if (!walls->gone[first[1] + j] && !(p->itself && AreJoined(walls, p->loop, i, j)) && Meet(&near, &other->box) &&
+          !IsBeyond(p, other, here.low, here.high))
         VisitSpans(p, i, j);
     }
   }

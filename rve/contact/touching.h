@@ -17,7 +17,7 @@
   point is held against all contours, and each pair of walls is met from both sides, with half the potential each.
 
   Closest points are computed where the boxes of two spans lie within reach, and the point is not farther outside the
-  other span than the width, as seen along the normal of its chord. One that lies deeper than the width behind a span has
+  other span than the width, as seen along the normal of its chord. One that lies behind a span of another cell has
   entered its wall only if no other span of that loop is nearer.
 */
 #ifndef LAM_RVE_TOUCHING_H
@@ -62,6 +62,7 @@ typedef struct {
   PetscBool is_patch;                    /* no images */
   PetscInt apart;                        /* least distance of points of one loop that may touch, in spans */
   PetscReal *weight;                     /* [loop][span][point] reference length */
+  PetscReal (*rest)[2];                  /* [loop][span] middle of a span at rest */
   PetscReal *thickness;                  /* [cell] of its wall, at most the depth to which points count */
   LamSplineWeights at[LAM_TOUCH_POINTS]; /* the points of a span */
   const PetscBool *near;                 /* [cell] whose walls are placed and visited; borrowed; NULL: all */

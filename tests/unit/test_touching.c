@@ -308,7 +308,7 @@ static int Touches(const LamWalls *walls, const double gap[], int other, int its
 
   if (gap[other] >= WIDTH) return 0;
   if (itself) return depth <= walls->thickness[0];
-  if (depth <= WIDTH) return 1;
+  if (depth <= 0.0) return 1;
   for (int k = 0; k < SpansOf(walls); k++)
     if (k != other && fabs(gap[k]) < depth) return 0;
   return depth <= DEEPEST;
