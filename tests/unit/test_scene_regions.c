@@ -209,7 +209,7 @@ TEST(mistakes_are_named)
       {"  regions: [{name: a/b}]\n", "part of a file's name"},
       {"  regions: [{name: a}, {name: a}]\n", "another region has this name"},
       {"  regions: [{name: a, where: y >}]\n", "is no expression of x and y"},
-      {"  regions: [{name: a, tissue: nowhere.json}]\n", "nowhere.json:0:0: cannot be read"},
+      {"  regions: [{name: a, tissue: nowhere.json}]\n", "nowhere.json: the tissue cannot be read"},
       {"  regions: [{name: a, cell: {apothem: 10 um}}]\n", "the wall, 11.25 um, fills the cell"},
       {"  regions: [{name: a, cell: {wall_thickness: 75 um}}]\n", "the wall, 75 um, fills the cell"},
       {"  regions: [{name: a, interface: {law: bonded, cohesion: 1 MPa}}]\n", "contradicts law: bonded"},
