@@ -3,6 +3,7 @@
 */
 #include "process_impl.h"
 #include <lamella/body.h>
+#include <lamella/tissue.h>
 #include <math.h>
 
 enum { MAX_SNAPS = 200 };
@@ -41,12 +42,17 @@ PetscBool LamProcessWallsStayAlike(const LamScene *scene)
   return PETSC_TRUE;
 }
 
-/* Lumens are hexagonal prisms of infinite length. */
+/* Lumens are prisms of infinite length. */
 PetscReal LamMembraneArea(const LamMicrostructure *micro)
 {
+  const LamTissue tissue = micro->tissue;
   const PetscInt cells = micro->cells[0] * micro->cells[1];
   PetscReal area = 0;
 
+  if (tissue) {
+    for (PetscInt c = 0; c < cells; c++) area += LamTissueInnerPerimeter(tissue, c, LamWallThickness(micro, c));
+    return area / tissue->area;
+  }
   for (PetscInt c = 0; c < cells; c++) area += 2 * (LamOuterApothem(micro) - LamWallThickness(micro, c));
   return area / (PetscReal)cells;
 }

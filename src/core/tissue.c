@@ -157,3 +157,20 @@ void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centre[2])
   for (PetscInt k = first; k < first + count; k++)
     for (PetscInt d = 0; d < 2; d++) centre[d] += tissue->corner[k][d] / (PetscReal)count;
 }
+
+PetscReal LamTissueInnerPerimeter(LamTissue tissue, PetscInt cell, PetscReal distance)
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt k = tissue->first[cell]; k < tissue->first[cell + 1]; k++) {
+    const PetscReal *x = tissue->corner[LamTissuePrevious(tissue, k)], *y = tissue->corner[k];
+    const PetscReal *z = tissue->corner[LamTissueNext(tissue, k)];
+    const PetscReal a[2] = {y[0] - x[0], y[1] - x[1]}, b[2] = {z[0] - y[0], z[1] - y[1]};
+    const PetscReal turn = PetscAtan2Real(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    const PetscReal tangent = PetscTanReal(0.5 * turn), setback = tissue->setback[k] - distance * tangent;
+
+    sum += PetscSqrtReal(b[0] * b[0] + b[1] * b[1]) - 2.0 * distance * tangent;
+    if (turn > 0.0 && setback > 0.0) sum -= 2.0 * setback - setback / tangent * turn;
+  }
+  return sum;
+}

@@ -24,7 +24,9 @@ static PetscReal Slenderness(const LamMicrostructure *micro, PetscInt *worst)
 
 PetscReal LamTangentRounding(const LamMicrostructure *micro)
 {
-  const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (PetscReal)(PetscMax(micro->cells[0], micro->cells[1]) - 1);
+  const PetscReal side =
+      micro->tissue ? PetscSqrtReal((PetscReal)micro->cells[0]) : (PetscReal)PetscMax(micro->cells[0], micro->cells[1]);
+  const PetscReal size = 1.0 + PetscSqrtReal(3.0) * (side - 1.0);
   const PetscReal coarse = PetscMax(1.0, PetscSqr(FEW_ELEMENTS / (PetscReal)micro->along));
   PetscInt worst;
 

@@ -143,6 +143,18 @@ TEST(ArcsHaveOneCentre)
   assert_int_equal(LamTissueDestroy(&tissue), 0);
 }
 
+/* A hexagon of side 1: 6 - 4 sqrt 3 t, and of its arcs 2 pi r instead of 4 sqrt 3 r, r = 0.2 sqrt 3 - t. */
+TEST(InnerPerimetersAreThoseOfHexagonsAndCircles)
+{
+  const double t = 0.1, r = 0.2 * sqrt(3.0) - t;
+  LamTissue tissue = OneCell(6, regular, 0.0);
+
+  assert_near(LamTissueInnerPerimeter(tissue, 0, t), 6.0 - 4.0 * sqrt(3.0) * t, 1e-14);
+  for (PetscInt k = 0; k < 6; k++) tissue->setback[k] = 0.2;
+  assert_near(LamTissueInnerPerimeter(tissue, 0, t), 6.0 - 4.0 * sqrt(3.0) * (t + r) + 2.0 * PETSC_PI * r, 1e-14);
+  assert_int_equal(LamTissueDestroy(&tissue), 0);
+}
+
 TEST(WallsThatFillACellAreRefused)
 {
   LamTissue tissue = OneCell(6, reflex, 0.0);
