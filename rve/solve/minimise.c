@@ -32,7 +32,7 @@
 #define WORTH_CORRECTING 0.2 /* least share of a step that is corrected */
 #define IDLE 8               /* iterations without progress after which the last digits are reached */
 #define PROGRESS 0.5
-#define FULL_STEPS 3    /* from which on the least shift falls, ... */
+#define FULL_STEPS 12   /* from which on the least shift falls, ... */
 #define EASE 0.3        /* ... by this factor each, ... */
 #define LEAST_EASE 1e-4 /* ... to this one: there the proximal shift is near */
 #define FIRM 1e-3       /* largest residual of a state that is accepted after a shifted step */
