@@ -81,7 +81,7 @@ compare() {
 }
 compare 0 bonded
 compare 17 bonded sealed
-compare 0 'contact, cohesion: 0.005 MPa' sealed
+compare 0 'contact, cohesion: 0.005 MPa'
 compare 10 'contact, sharpness: smooth'
 compare 0 'lamella, strength: 0.05 MPa, fracture_energy: 0.5 J/m^2'
 compare 0 bonded prescribed 'variation: {kinds: [{turgor: 0.5}], list: [0, 1, 1, 0]}'
