@@ -64,7 +64,7 @@ typedef struct {
 PetscErrorCode LamMeshCreate(const LamMicrostructure *micro, LamMesh *mesh);
 PetscErrorCode LamMeshDestroy(LamMesh *mesh);
 /* The cells around the junction where a face starts, by their faces that start there, counter-clockwise. */
-#define LAM_MOST_AROUND 16 /* (src/core/tissue.c refuses more) */
+#define LAM_MOST_AROUND 16 /* (src/core/polygons.c refuses more) */
 typedef struct {
   PetscInt count, at; /* of the faces; and which of them was asked for */
   PetscBool closed;   /* no air is between them */

@@ -1,8 +1,9 @@
 #include "outline.h"
 
-#define LEAST                                                                                                          \
-  0.25                 /* part of its usual length or radius to which an inner contour may shrink: elements of a Q2    \
-                          mesh then still have a quarter of their outer width */
+/* Part of its usual length or radius to which an inner contour may shrink: elements then have a quarter of their outer
+   width. */
+#define LEAST 0.25
+#define BOTH_ENDS 0.45 /* of an inner line: something of it is left between arcs at both its ends */
 #define STRAIGHT 1e-2  /* radian: corners that turn less have no arc, and their mitre is the mean of both normals */
 #define SHARPEST 0.175 /* radian: 10 degrees between two faces; elements along narrower mitres degenerate */
 #define PASSES 20      /* of thickening: each face that shrinks another one is met in the next pass */
@@ -167,8 +168,8 @@ static void RoundCorners(LamTissue tissue, PetscInt cell, LamOutline *o)
     if (d == 0.0 || o->turn[k] < STRAIGHT) continue;
     SetArc(o, k, d, &o->outer[k]);
     inner = InnerSetback(o, k);
-    inner =
-        PetscMin(inner, 0.45 * PetscMin(InnerLength(o, k, o->thickness), InnerLength(o, Previous(o, k), o->thickness)));
+    inner = PetscMin(
+        inner, BOTH_ENDS * PetscMin(InnerLength(o, k, o->thickness), InnerLength(o, Previous(o, k), o->thickness)));
     SetArc(o, k, inner, &o->inner[k]);
   }
 }
