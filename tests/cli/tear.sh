@@ -5,8 +5,8 @@ brittle='law: lamella, strength: 0.02 MPa, fracture_energy: 0.1 J/m^2'
 # on 6 elements along a face, which is coarse: a warning says so
 tissue interface="$brittle" mesh='along: 6, through: 1' >scene.yaml </dev/null
 
-expect 0 -o 'the layer comes apart' -o '^2 curves' -e 'do not resolve' "$lamella" tear scene.yaml --turgor "0,0.02 MPa" --modes opening --steps 20 -o law.csv
-expect 0 "$lamella" tear scene.yaml --turgor "0, 20 kPa" --modes opening --steps 20 --json -o again.csv
+expect 0 -o 'the layer comes apart' -o '^2 curves' -e 'do not resolve' "$lamella" tear scene.yaml --turgor "0,0.02 MPa" --modes opening --steps 80 -o law.csv
+expect 0 "$lamella" tear scene.yaml --turgor "0, 20 kPa" --modes opening --steps 80 --json -o again.csv
 cmp -s law.csv again.csv || fail "the table depends on what is printed"
 /usr/bin/python3 - <<'PYTHON' || fail "the curves: $(grep curve out.txt)"
 import csv, json
@@ -28,14 +28,14 @@ for c in curves:
     # the separation is that of the layer, and the traction does its work
     assert all(abs(p["separation"] - height * (p["F22"] - F0["F22"])) < 1e-6 and p["F11"] == F0["F11"] for p in own)
     integral = sum((p["traction"] + q["traction"]) / 2 * (q["separation"] - p["separation"]) for p, q in zip(own, own[1:]))
-    assert abs(integral - last["work"]) < 0.02 * last["work"], (integral, last["work"])
+    assert abs(integral - last["work"]) < 0.005 * last["work"], (integral, last["work"])
     # the balance; what jumps lose is never gained, up to the error of the trapezoidal rule on coarse steps
     for p, q in zip(own, own[1:]):
         assert abs(q["work"] - q["stored"] - q["dissipated"] - q["released"]) < 1e-12
         assert q["dissipated"] >= p["dissipated"] - 1e-12 and q["released"] > p["released"] - 0.015 * last["work"]
     assert abs(c["energy"] - last["dissipated"] - last["released"]) < 1e-12 and c["work"] == last["work"]
-    # the law of the crack alone spends what the layer does
-    assert abs(c["law_energy"] - last["work"]) < 0.02 * last["work"], (c["law_energy"], last["work"])
+    # the law of the crack alone spends what the layer does, up to the same rule: 2 % on steps four times as long
+    assert abs(c["law_energy"] - last["work"]) < 0.005 * last["work"], (c["law_energy"], last["work"])
     assert abs(c["straight_crack_energy"] * F0["F11"] - 0.1 * 2 / 3 ** 0.5) < 1e-9
     assert c["strength"] == max(p["traction"] for p in own)
     assert 0.8 * c["straight_crack_energy"] < c["energy"] < 3 * c["straight_crack_energy"]
