@@ -272,7 +272,7 @@ static PetscErrorCode HoldFaces(Builder *b)
     b->tissue->held[k] = (PetscBool)(p->sides == LAM_SIDES_AFFINE || top - low <= off || high - bottom <= off);
   }
   MUST(
-      where[0] == low && where[1] == high,
+      p->sides == LAM_SIDES_AFFINE || (where[0] == low && where[1] == high),
       "%s: no edge lies along the %s end of the patch, X2 = %.6g, where the grip holds; a patch has straight ends, and "
       "a tissue that repeats has a period",
       p->name, where[0] == low ? "upper" : "lower", (double)(where[0] == low ? high : low));

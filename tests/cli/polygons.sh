@@ -5,28 +5,30 @@
 package
 
 cat >hexagons.py <<'PYTHON'
-"""Writes 2 x 2 hexagons of apothem 75 um, turned by the angle in degrees, as polygons of um."""
+"""Writes 2 x 2 hexagons of apothem 75 um, turned by the angle in degrees, as polygons of um; or a patch of 2 x 3."""
 import json, math, sys
 
-turn = math.radians(float(sys.argv[1]))
+turn, patch = math.radians(float(sys.argv[1])), sys.argv[2:] == ["patch"]
 L = [(150 * math.cos(turn + k * math.pi / 3), 150 * math.sin(turn + k * math.pi / 3)) for k in range(2)]
 vertices, cells, known = [], [], {}
 for i in range(2):
-    for j in range(2):
+    for j in range(3 if patch else 2):
         cell = []
         for k in range(6):
             angle, radius = turn + math.radians(60 * k - 30), 150 / math.sqrt(3)
-            x = i * L[0][0] + j * L[1][0] + radius * math.cos(angle)
-            y = i * L[0][1] + j * L[1][1] + radius * math.sin(angle)
+            # the rows of a patch shift by turns
+            along = i - j // 2 if patch else i
+            x = along * L[0][0] + j * L[1][0] + radius * math.cos(angle)
+            y = along * L[0][1] + j * L[1][1] + radius * math.sin(angle)
             key = round(x, 6), round(y, 6)
             if key not in known:
                 known[key] = len(vertices)
                 vertices.append([x, y])
             cell.append(known[key])
-        start = i + 2 * j
+        start = (i + 2 * j) % 6
         cells.append(cell[start:] + cell[:start])
-json.dump({"lamella_tissue": 1, "unit": "um", "period": [[2 * c for c in v] for v in L], "wall_thickness": 11.25,
-           "vertices": vertices, "cells": cells}, sys.stdout)
+file = {"lamella_tissue": 1, "unit": "um", "wall_thickness": 11.25, "vertices": vertices, "cells": cells}
+json.dump(file if patch else {**file, "period": [[2 * c for c in v] for v in L]}, sys.stdout)
 PYTHON
 cat >compare.py <<'PYTHON'
 import json, sys
@@ -53,8 +55,9 @@ for one, other in zip(*(map(json.loads, open(name)) for name in sys.argv[1:3])):
 assert known > 100, known
 PYTHON
 
-# scene NAME ORIENTATION CELLS KEYS: of rve
+# scene NAME ORIENTATION CELLS INTERFACE [TURGOR [KEYS [BLOCKS]]]: keys of rve, blocks beside it
 scene() {
+  local load='load: [{F: [[1.02, 0.1], [0, 1]]}, {F: [[1.02, 0.2], [0.01, 1]]}]'
   cat >"$1.yaml" <<YAML
 version: 1
 rve:
@@ -64,26 +67,40 @@ rve:
   turgor: {mode: ${5:-prescribed}, pressure: 0.06 MPa}
   mesh: {along: 4, through: 1}
   ${6:-}
-load: [{F: [[1.02, 0.1], [0, 1]]}, {F: [[1.02, 0.2], [0.01, 1]], P: ${7:-x}}]
+${7:-$load}
 YAML
-  sed -i 's/, P: x//' "$1.yaml"
 }
 compare() {
+  local name command=rve cells='cells: [2, 2]' patch=
+  [ "$1" != patch ] || { cells='patch: {columns: 2, rows: 3}' patch=patch; shift; }
+  [[ ${5:-} != *process:* ]] || command=process
   scene hexagons "$1" "cell: {apothem: 75 um, wall_thickness: 11.25 um, orientation: $1 deg}
-  cells: [2, 2]" "${@:2}"
+  $cells" "${@:2}"
   scene polygons "$1" "cell: {orientation: $1 deg}
   tissue: hexagons.json" "${@:2}"
-  "$python" hexagons.py "$1" >hexagons.json
+  "$python" hexagons.py "$1" $patch >hexagons.json
   for name in hexagons polygons; do
-    "$lamella" rve $name.yaml --json --quiet >$name.out 2>err.txt || fail "$name: $(cat err.txt)"
+    "$lamella" $command $name.yaml --json --quiet >$name.out 2>err.txt || fail "$name: $(cat err.txt)"
   done
   "$python" compare.py hexagons.out polygons.out 2>err.txt || fail "$*: $(tail -1 err.txt)"
 }
-compare 0 bonded
+brittle='lamella, strength: 0.05 MPa, fracture_energy: 0.5 J/m^2'
 compare 17 bonded sealed
 compare 0 'contact, cohesion: 0.005 MPa'
 compare 10 'contact, sharpness: smooth'
-compare 0 'lamella, strength: 0.05 MPa, fracture_energy: 0.5 J/m^2'
+compare 0 "$brittle"
+compare patch 0 "$brittle"
+# stress given: F is what the solver finds
+compare 0 'contact, cohesion: 0.005 MPa' prescribed '' 'load:
+  - {F: [[1.05, 0.1], [0, free]], P: [[x, x], [x, -0.05 MPa]]}
+  - {F: [[1.1, free], [0, free]], P: [[x, 0 MPa], [x, -0.05 MPa]]}'
+# walls begin to tear; cells differ, since of equal ones any may be the first
+compare 0 "$brittle" prescribed 'variation: {kinds: [{turgor: 1.1}, {turgor: 0.9}, {turgor: 0.8}], list: [0, 1, 2, 3]}' \
+  'strength: {wall: 0.25 MPa, wall_fracture_energy: 10 J/m^2}
+load: [{F: [[1.05, 0], [0, 1]]}, {F: [[1.1, 0], [0, 1]]}]'
+grep -q '"dissipated_walls": [1-9]' polygons.out || fail "no wall tears: $(cat polygons.out)"
+# ripening: water, turgor, the lamella and the walls
+compare 0 bonded prescribed '' "$(sed -n '/^strength/,$p' "$source/tests/scenes/ripening.yaml")"
 compare 0 bonded prescribed 'variation: {kinds: [{turgor: 0.5}], list: [0, 1, 1, 0]}'
 
 # what the file says wrong: an expression for Python, and the message
@@ -113,8 +130,9 @@ wrong 'd["lamella_tissue"] = 2' 'wrong.json: is no tissue file that this version
 sed -i 's/, list: .*}/}/' polygons.yaml
 wrong 'd["classes"] = [0, 0, 2, 0]' 'kinds: .*has 1 kinds, and the file of the tissue has a cell of class 2'
 wrong 'd["wall_thickness"] = 80' 'the walls, 80 um, fill cells of the apothem 75 um'
+sed -i 's/^  tissue:/  patch: {sides: free}\n&/' polygons.yaml
 wrong 'del d["period"]' 'no edge lies along the .* end of the patch'
 sed 's/tissue:/cells: [2, 2]\n  &/' polygons.yaml >wrong.yaml
-expect 2 -e 'rve.cells: given together with tissue in line 5, whose file has the cells; leave it out' "$lamella" check wrong.yaml
+expect 2 -e 'rve.cells: given together with tissue in line 6, whose file has the cells; leave it out' "$lamella" check wrong.yaml
 sed 's/hexagons.json/none.json/' polygons.yaml >wrong.yaml
 expect 2 -e 'none.json: the tissue cannot be read: ' "$lamella" check wrong.yaml
