@@ -14,16 +14,15 @@ from typing import Any, TypeAlias
 
 from . import Scene
 from ._library import Error, InputError, library_folder
+from ._served import FILES, INPUT, UNSOLVED, USAGE
 from .results import Result
 
 SceneLike: TypeAlias = Scene | str | os.PathLike[str] | dict[str, Any]
 Place: TypeAlias = str | os.PathLike[str]
-USAGE, INPUT, UNSOLVED, FILES = 1, 2, 3, 4  # exit statuses (docs/reference/commands.md)
 WITHOUT_JSON = ("plot", "completion", "manual")
 # what mpirun, or MPI itself, tells the ranks of a job; not what users set: OMPI_MCA_rmaps_base_oversubscribe, ...
 RANK = re.compile("OMPI_(?!MCA_|ALLOW_RUN_AS_ROOT)|OMPI_MCA_(orte_|ess|pmix|initial_wdir|mpi_oversubscribe)|"
                   "(PMIX|PRTE)_(?!MCA_)|PMI_|ORTE_")
-
 
 _children: set["subprocess.Popen[str]"] = set()  # commands that run
 

@@ -9,12 +9,12 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .. import Error, InputError, quantity
+from .. import InputError, quantity
+from .._served import USAGE, served
 from ..tissue import Tissue
 from . import borders, picture as pictures
 from .walls import Walls
 
-USAGE, INPUT, IO, FAULT = 1, 2, 4, 70  # exit statuses (docs/reference/commands.md)
 UNIT, METRE = "um", 1e6  #: of the file
 JAGGED = 7  #: of the rms by which pixels differ from faces that follow their noise: 5 of the noise, which hardly one in
 #: thousands exceeds
@@ -198,19 +198,7 @@ def run(told: argparse.Namespace) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Exit status."""
     told = _parser().parse_args(arguments)
-    try:
-        run(told)
-        return 0
-    except InputError as error:
-        status, message = INPUT, str(error)
-    except OSError as error:
-        status, message = IO, str(error)
-    except MemoryError:
-        status, message = FAULT, "out of memory"
-    except Error as error:
-        status, message = FAULT, str(error)
-    print(f"lamella.cells: {message}", file=sys.stderr)
-    return status
+    return served("lamella.cells", lambda: run(told))
 
 
 if __name__ == "__main__":

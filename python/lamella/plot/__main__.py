@@ -2,11 +2,9 @@
 import json
 import sys
 
-from .. import Error, InputError
+from .._served import served
 from . import draw, fields, save
 from .page import check_path
-
-INPUT, IO, FAULT = 2, 4, 70  # exit statuses (docs/reference/commands.md)
 
 
 def _progress(total):
@@ -37,21 +35,7 @@ def main(argument):
     if argument == "fields":
         print("\n".join(fields()))
         return 0
-    try:
-        run(json.loads(argument))
-        return 0
-    except InputError as error:
-        status, message = INPUT, error
-    except OSError as error:
-        status, message = IO, error
-    except MemoryError:
-        status, message = FAULT, "out of memory"
-    except Error as error:
-        status, message = FAULT, error
-    except KeyboardInterrupt:
-        return 130
-    print(f"lamella: {message}", file=sys.stderr)
-    return status
+    return served("lamella", lambda: run(json.loads(argument)))
 
 
 if __name__ == "__main__":

@@ -2,16 +2,15 @@
 import json
 import re
 import sys
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from .. import Error, InputError, quantity
+from .. import InputError, quantity
+from .._served import served
 from .make import Asked, make
 from .report import table
 
-INPUT, IO, FAULT = 2, 4, 70  # exit statuses (docs/reference/commands.md)
 NUMBERS = ("variation", "elongation", "aspect", "gas")
 UNIT = re.compile(r"\s*[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?\s*(.*\S)")  # of a quantity that is one
 
@@ -56,27 +55,9 @@ def run(request: dict[str, Any]) -> None:
     sys.stdout.flush()
 
 
-def served(command: str, run: Callable[[dict[str, Any]], int | None], argument: str) -> int:
-    """Exit status of a request, what is wrong with it told in words."""
-    try:
-        return run(json.loads(argument)) or 0
-    except InputError as error:
-        status, message = INPUT, str(error)
-    except OSError as error:
-        status, message = IO, str(error)
-    except MemoryError:
-        status, message = FAULT, "out of memory"
-    except Error as error:
-        status, message = FAULT, str(error)
-    except KeyboardInterrupt:
-        return 130
-    print(f"lamella {command}: {message}", file=sys.stderr)
-    return status
-
-
 def main(argument: str) -> int:
     """Exit status of a request."""
-    return served("tissue", run, argument)
+    return served("lamella tissue", lambda: run(json.loads(argument)))
 
 
 if __name__ == "__main__":

@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .. import Error, InputError, Scene, program, scene_dict
+from .._served import served
 from . import realised, scatter
-from .__main__ import served
 from .file import Tissue
 from .make import Asked
 
@@ -277,4 +277,4 @@ def main(argument: str) -> int:
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
     for signals in (signal.SIGINT, signal.SIGTERM):
         signal.signal(signals, _interrupt)
-    return served("rve", run, argument)
+    return served("lamella rve", lambda: run(json.loads(argument)))
