@@ -2,6 +2,7 @@
 
 #define LEAST_H 0.05 /* of m: bounds d2(gap) where a wall is bent as sharply as a point lies deep in it */
 #define ROOT_STEPS 60
+#define PIECES 8 /* in which minima of the distance are looked for: a span of the degree 3 has 3 at most */
 
 void LamTouchLawEvaluate(PetscReal gap, PetscReal width, LamTouchLaw *law)
 {
@@ -77,12 +78,11 @@ static inline PetscReal Along(const LamSplineCurve *curve, const PetscReal X[2],
 
 /* Newton's method on (X - y).tau = 0 from the zero of its chord, safeguarded by bisection. The last step leaves an
    error of about its square, the rounding. */
-PetscReal LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2])
+static PetscReal RootBetween(const LamSplineCurve *curve, const PetscReal X[2], PetscReal low, PetscReal high,
+                             const PetscReal ends[2])
 {
-  PetscReal low = 0.0, high = 1.0, slope, t;
-  const PetscReal start = Along(curve, X, 0.0, &slope), end = Along(curve, X, 1.0, &slope);
+  PetscReal slope, t = low + (high - low) * PetscMax(0.0, PetscMin(1.0, ends[0] / (ends[0] - ends[1])));
 
-  t = PetscMax(0.0, PetscMin(1.0, start / (start - end)));
   for (PetscInt k = 0; k < ROOT_STEPS; ++k) {
     const PetscReal value = Along(curve, X, t, &slope), before = t;
 
@@ -95,6 +95,30 @@ PetscReal LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2])
     if (PetscAbsReal(t - before) <= PetscSqrtReal(0.5 * PETSC_MACHINE_EPSILON)) break;
   }
   return t;
+}
+
+PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2], PetscBool has_one,
+                           PetscReal *t)
+{
+  const PetscInt pieces = has_one ? 1 : PIECES;
+  PetscReal least = PETSC_INFINITY, at[2] = {ends[0], ends[0]}, slope, y[2], tau[2], bend[2];
+
+  for (PetscInt k = 1; k <= pieces; ++k) {
+    const PetscReal low = (PetscReal)(k - 1) / (PetscReal)pieces, high = (PetscReal)k / (PetscReal)pieces;
+
+    at[0] = at[1];
+    at[1] = k == pieces ? ends[1] : Along(curve, X, high, &slope);
+    if (!(at[0] > 0.0) || at[1] > 0.0) continue;
+
+    const PetscReal root = RootBetween(curve, X, low, high, at);
+
+    LamSplineAt(curve, root, y, tau, bend);
+    const PetscReal square = PetscSqr(X[0] - y[0]) + PetscSqr(X[1] - y[1]);
+
+    if (square < least) *t = root;
+    least = PetscMin(least, square);
+  }
+  return (PetscBool)(least < PETSC_INFINITY);
 }
 
 void LamTouchGapAt(const LamSplineCurve *curve, const PetscReal X[2], PetscReal t, LamTouchGap *gap)

@@ -254,12 +254,13 @@ static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
 
   for (PetscInt a = 0; a < LAM_SPAN - 1; ++a)
     leg[a] = (p[a + 1][0] - p[a][0]) * chord[0] + (p[a + 1][1] - p[a][1]) * chord[1];
-  span->outward[0] = span->outward[1] = 0.0;
+  span->outward[0] = span->outward[1] = span->slowest = 0.0;
   span->top = PETSC_MAX_REAL;
   if (!(leg[0] > 0.0 && leg[1] >= 0.0 && leg[2] > 0.0)) return;
   length = PetscSqrtReal(chord[0] * chord[0] + chord[1] * chord[1]);
   span->outward[0] = chord[1] / length;
   span->outward[1] = -chord[0] / length;
+  span->slowest = PetscSqr(3.0 * PetscMin(leg[0], PetscMin(leg[1], leg[2])) / length);
   span->top = -PETSC_MAX_REAL;
   for (PetscInt a = 0; a < LAM_SPAN; ++a)
     span->top = PetscMax(span->top, span->outward[0] * p[a][0] + span->outward[1] * p[a][1]);
@@ -274,6 +275,10 @@ static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
   GatherSpan(walls, loop, i, c);
   LamSplineCurveOf((const PetscReal(*)[2])c, &span->curve);
   Bound((const PetscReal(*)[2])c, span);
+  for (PetscInt d = 0; d < 2; ++d) {
+    span->bend[0][d] = 2.0 * span->curve.a[2][d];
+    span->bend[1][d] = span->bend[0][d] + 6.0 * span->curve.a[3][d];
+  }
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, span->point[q]);
   if (i % GROUP == 0) *group = nothing;
@@ -346,6 +351,39 @@ static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2]
   return (X[0] - a[0][0]) * a[1][0] + (X[1] - a[0][1]) * a[1][1];
 }
 
+/* Whether the distance of X has one minimum on a span at most: (X - y).tau falls everywhere on it, by tau.tau - (X -
+   y).y_uu. */
+static inline PetscBool HasOneMinimum(const LamWallSpan *span, const PetscReal X[2])
+{
+  const LamBox *box = &span->box;
+  PetscReal most = -PETSC_MAX_REAL;
+
+  for (PetscInt e = 0; e < 2; ++e) {
+    PetscReal sum = 0.0;
+
+    for (PetscInt d = 0; d < 2; ++d)
+      sum += span->bend[e][d] * (X[d] - (span->bend[e][d] > 0.0 ? box->low[d] : box->high[d]));
+    most = PetscMax(most, sum);
+  }
+  return (PetscBool)(most < span->slowest);
+}
+
+/* The gap of X to its closest point on span j of a loop. PETSC_FALSE: it is on another span. */
+static inline PetscBool FindGap(const LamWalls *walls, PetscInt loop, PetscInt j, const PetscReal X[2],
+                                LamTouchGap *gap)
+{
+  const LamWallSpan *first = &walls->span[walls->first[loop]], *span = first + j;
+  const LamWallSpan *next = j + 1 == LamWallsSpans(walls, loop) ? first : span + 1;
+  const PetscReal ends[2] = {AlongStart(span, X), AlongStart(next, X)};
+  const PetscBool has_one = HasOneMinimum(span, X);
+  PetscReal t;
+
+  if (has_one && (!(ends[0] > 0.0) || ends[1] > 0.0)) return PETSC_FALSE;
+  if (!LamSplineClosest(&span->curve, X, ends, has_one, &t)) return PETSC_FALSE;
+  LamTouchGapAt(&span->curve, X, t, gap);
+  return PETSC_TRUE;
+}
+
 /* Whether two spans of a loop belong together: they follow each other, or wall lies between them at rest, as on both
    sides of an acute corner. */
 static inline PetscBool AreJoined(const LamWalls *walls, PetscInt loop, PetscInt i, PetscInt j)
@@ -375,9 +413,7 @@ static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, Petsc
       LamTouchGap gap;
 
       if (k == j || walls->gone[walls->first[p->other] + k] || !Meet(&near, &first[k].box)) continue;
-      if (!(AlongStart(&first[k], X) > 0.0) || AlongStart(&first[k + 1 == n ? 0 : k + 1], X) > 0.0) continue;
-      LamTouchGapAt(&first[k].curve, X, LamSplineClosest(&first[k].curve, X), &gap);
-      if (PetscAbsReal(gap.gap) < depth) return PETSC_TRUE;
+      if (FindGap(walls, p->other, k, X, &gap) && PetscAbsReal(gap.gap) < depth) return PETSC_TRUE;
     }
   }
   return PETSC_FALSE;
@@ -411,15 +447,13 @@ static PetscBool Counts(const Pair *p, const LamWallSpan *own, PetscInt q, const
 static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
 {
   const LamWalls *walls = p->walls;
-  const LamWallSpan *own = &walls->span[walls->first[p->loop] + i], *first = &walls->span[walls->first[p->other]];
-  const LamWallSpan *other = first + j, *next = j + 1 == LamWallsSpans(walls, p->other) ? first : other + 1;
+  const LamWallSpan *own = &walls->span[walls->first[p->loop] + i], *other = &walls->span[walls->first[p->other] + j];
   LamTouching touch;
 
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
     const PetscReal X[2] = {own->point[q][0] - p->moved[0], own->point[q][1] - p->moved[1]};
 
-    if (!(AlongStart(other, X) > 0.0) || AlongStart(next, X) > 0.0 || IsBeyond(p, other, X, X)) continue;
-    LamTouchGapAt(&other->curve, X, LamSplineClosest(&other->curve, X), &touch.gap);
+    if (IsBeyond(p, other, X, X) || !FindGap(walls, p->other, j, X, &touch.gap)) continue;
     if (!Counts(p, own, q, X, j, &touch.gap)) continue;
     touch.loop = p->loop;
     touch.span = i;

@@ -224,21 +224,24 @@ static void PointOf(const Arc *arc, double X[2])
   LamSplineSum(w.N, (const double(*)[2])arc->x, X);
 }
 
-/* Whether (X - y).tau is positive at the start and negative at the end, with a margin. */
+/* (X - y).tau at t. */
+static double AlongAt(const double c[LAM_SPAN][2], const double X[2], double t)
+{
+  const LamSplineWeights w = WeightsAt(t);
+  double y[2], tau[2];
+
+  LamSplineSum(w.N, c, y);
+  LamSplineSum(w.dN, c, tau);
+  return (X[0] - y[0]) * tau[0] + (X[1] - y[1]) * tau[1];
+}
+
+/* Whether it is positive at the start and negative at the end, with a margin. */
 static int IsBeside(const Arc *arc)
 {
-  double X[2], value[2];
+  double X[2];
 
   PointOf(arc, X);
-  for (int end = 0; end < 2; end++) {
-    const LamSplineWeights w = WeightsAt(end ? 0.95 : 0.05);
-    double y[2], tau[2];
-
-    LamSplineSum(w.N, SpanOf(arc), y);
-    LamSplineSum(w.dN, SpanOf(arc), tau);
-    value[end] = (X[0] - y[0]) * tau[0] + (X[1] - y[1]) * tau[1];
-  }
-  return value[0] > 0.0 && value[1] < 0.0;
+  return AlongAt(SpanOf(arc), X, 0.05) > 0.0 && AlongAt(SpanOf(arc), X, 0.95) < 0.0;
 }
 
 /* Control points near a circle of radius 0.4, 0.3 apart in angle, counter-clockwise; the point's own ones near a line
@@ -280,10 +283,11 @@ static LamSplineCurve CurveOf(const Arc *arc)
 static double ClosestTo(const Arc *arc)
 {
   const LamSplineCurve curve = CurveOf(arc);
-  double X[2];
+  double X[2], t;
 
   PointOf(arc, X);
-  return LamSplineClosest(&curve, X);
+  assert_true(LamSplineClosest(&curve, X, (double[]){AlongAt(SpanOf(arc), X, 0.0), AlongAt(SpanOf(arc), X, 1.0)}, PETSC_TRUE, &t));
+  return t;
 }
 
 static LamTouchGap GapOf(const Arc *arc)
@@ -332,6 +336,26 @@ TEST(CurveIsTheSpline)
     LamSplineSum(w.ddN, SpanOf(arc), sum[2]);
     for (int k = 0; k < 3; k++)
       for (int d = 0; d < 2; d++) assert_near(at[k][d], sum[k][d], 1e-15);
+  }
+}
+
+TEST(InASharpBendTheNearerSideIsTheClosest)
+{
+  static const double bend[LAM_SPAN][2] = {{-0.6, -0.1}, {0.05, -0.04}, {0.05, 0.04}, {-0.6, 0.1}};
+  LamSplineCurve curve;
+
+  LamSplineCurveOf(bend, &curve);
+  for (double side = -0.0295; side < 0.03; side += 0.001) { /* behind both sides, whose distances differ */
+    const double X[2] = {-0.04, side}, ends[2] = {AlongAt(bend, X, 0.0), AlongAt(bend, X, 1.0)};
+    double t, least = INFINITY, y[2], tau[2], second[2];
+
+    assert_true(LamSplineClosest(&curve, X, ends, PETSC_FALSE, &t));
+    for (double s = 0.0; s <= 1.0; s += 1e-3) {
+      LamSplineAt(&curve, s, y, tau, second);
+      least = fmin(least, hypot(X[0] - y[0], X[1] - y[1]));
+    }
+    LamSplineAt(&curve, t, y, tau, second);
+    assert_in_range(1e6 * (least - hypot(X[0] - y[0], X[1] - y[1])), 0, 10);
   }
 }
 

@@ -296,10 +296,11 @@ static double GapFrom(const double c[LAM_SPAN][2], const double X[2], const doub
 {
   LamSplineCurve curve;
   LamTouchGap gap;
+  double t;
 
   LamSplineCurveOf(c, &curve);
-  if (!(AlongAt(c, 0.0, X) > 0.0) || AlongAt(c, 1.0, X) > 0.0) return INFINITY;
-  LamTouchGapAt(&curve, X, LamSplineClosest(&curve, X), &gap);
+  if (!LamSplineClosest(&curve, X, (double[]){AlongAt(c, 0.0, X), AlongAt(c, 1.0, X)}, PETSC_FALSE, &t)) return INFINITY;
+  LamTouchGapAt(&curve, X, t, &gap);
   *opposed = tau[1] * gap.normal[0] - tau[0] * gap.normal[1] < 0.0;
   return gap.gap;
 }
