@@ -419,28 +419,13 @@ static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, Petsc
   return PETSC_FALSE;
 }
 
-/* Whether the normals of a point's own wall and of the one that it is near to are opposed. */
-static PetscBool AreOpposed(const LamWallSpan *own, PetscInt q, const LamTouchGap *gap)
-{
-  PetscReal y[2], tau[2], bend[2];
-
-  LamSplineAt(&own->curve, ((PetscReal)q + 0.5) / LAM_TOUCH_POINTS, y, tau, bend);
-  return (PetscBool)(tau[1] * gap->normal[0] - tau[0] * gap->normal[1] < 0.0);
-}
-
 /* Beyond the thickness of the wall it enters, a point is nearer to that wall's other side if the wall is that of the
-   same cell. In another cell it counts down to DEEPEST, if no other wall of that cell is nearer; deeper than the width
-   it may have come through from the opposite wall, and is then behind this one without having entered it: the normals
-   are not opposed. */
-static PetscBool Counts(const Pair *p, const LamWallSpan *own, PetscInt q, const PetscReal X[2], PetscInt j,
-                        const LamTouchGap *touch)
+   same cell. In another cell it counts down to DEEPEST, if no other wall of that cell is nearer. */
+static PetscBool Counts(const Pair *p, const PetscReal X[2], PetscInt j, PetscReal gap)
 {
-  const PetscReal gap = touch->gap;
-
   if (!(gap < p->width)) return PETSC_FALSE;
   if (p->itself) return (PetscBool)(gap >= -p->walls->thickness[p->other / 2]);
-  if (gap >= 0.0) return PETSC_TRUE;
-  return (PetscBool)(gap >= -DEEPEST && (gap >= -p->width || AreOpposed(own, q, touch)) && !IsNearer(p, X, j, -gap));
+  return (PetscBool)(gap >= 0.0 || (gap >= -DEEPEST && !IsNearer(p, X, j, -gap)));
 }
 
 /* Points of one span against one span of the other loop. */
@@ -454,7 +439,7 @@ static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
     const PetscReal X[2] = {own->point[q][0] - p->moved[0], own->point[q][1] - p->moved[1]};
 
     if (IsBeyond(p, other, X, X) || !FindGap(walls, p->other, j, X, &touch.gap)) continue;
-    if (!Counts(p, own, q, X, j, &touch.gap)) continue;
+    if (!Counts(p, X, j, touch.gap.gap)) continue;
     touch.loop = p->loop;
     touch.span = i;
     touch.point = q;

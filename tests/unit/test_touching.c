@@ -290,9 +290,8 @@ static double AlongAt(const double c[LAM_SPAN][2], double t, const double X[2])
   return (X[0] - y[0]) * tau[0] + (X[1] - y[1]) * tau[1];
 }
 
-/* Gap of a point at X, on a wall whose tangent is tau, from a span, infinite where the point is not beside it; whether
-   the normals of both walls are opposed. */
-static double GapFrom(const double c[LAM_SPAN][2], const double X[2], const double tau[2], int *opposed)
+/* Gap of a point at X from a span, infinite where the point is not beside it. */
+static double GapFrom(const double c[LAM_SPAN][2], const double X[2])
 {
   LamSplineCurve curve;
   LamTouchGap gap;
@@ -301,12 +300,11 @@ static double GapFrom(const double c[LAM_SPAN][2], const double X[2], const doub
   LamSplineCurveOf(c, &curve);
   if (!LamSplineClosest(&curve, X, (double[]){AlongAt(c, 0.0, X), AlongAt(c, 1.0, X)}, PETSC_FALSE, &t)) return INFINITY;
   LamTouchGapAt(&curve, X, t, &gap);
-  *opposed = tau[1] * gap.normal[0] - tau[0] * gap.normal[1] < 0.0;
   return gap.gap;
 }
 
 /* Whether a point touches span `other`, from its gaps from all spans of the loop. */
-static int Touches(const LamWalls *walls, const double gap[], int opposed, int other, int itself)
+static int Touches(const LamWalls *walls, const double gap[], int other, int itself)
 {
   const double depth = -gap[other];
 
@@ -315,7 +313,7 @@ static int Touches(const LamWalls *walls, const double gap[], int opposed, int o
   if (depth <= 0.0) return 1;
   for (int k = 0; k < SpansOf(walls); k++)
     if (k != other && fabs(gap[k]) < depth) return 0;
-  return depth <= WIDTH || (depth <= DEEPEST && opposed);
+  return depth <= DEEPEST;
 }
 
 /* Takes off what must be found of a point of a wall, in one image. */
@@ -324,25 +322,22 @@ static void TakePoint(Pairs *p, int span, int point, int i, int j)
   const LamWalls *walls = p->walls;
   const double(*L)[2] = walls->mesh->period, S[2] = {i * L[0][0] + j * L[1][0], i * L[0][1] + j * L[1][1]};
   const int n = SpansOf(walls), itself = i == 0 && j == 0;
-  double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], tau[2], *gap = calloc((size_t)n, sizeof(*gap));
-  int *opposed = calloc((size_t)n, sizeof(*opposed));
+  double own[LAM_SPAN][2], c[LAM_SPAN][2], X[2], *gap = calloc((size_t)n, sizeof(*gap));
 
   SpanOf(walls, span, own);
   LamSplineSum(walls->at[point].N, (const double(*)[2])own, X);
-  LamSplineSum(walls->at[point].dN, (const double(*)[2])own, tau);
   for (int d = 0; d < 2; d++) X[d] -= sheared[3 * d] * S[0] + sheared[3 * d + 1] * S[1];
   for (int other = 0; other < n; other++) {
     SpanOf(walls, other, c);
-    gap[other] = GapFrom((const double(*)[2])c, X, tau, &opposed[other]);
+    gap[other] = GapFrom((const double(*)[2])c, X);
   }
   for (int other = 0; other < n; other++) {
     const int between = PetscMin(abs(span - other), n - abs(span - other));
 
     if (itself && between < walls->apart) continue;
-    if (Touches(walls, gap, opposed[other], other, itself)) p->found[PairOf(p, i, j, span, point, other)]--;
+    if (Touches(walls, gap, other, itself)) p->found[PairOf(p, i, j, span, point, other)]--;
   }
   free(gap);
-  free(opposed);
 }
 
 static void PairsEnter(Pairs *p, LamRVE rve)
