@@ -97,17 +97,47 @@ static PetscReal RootBetween(const LamSplineCurve *curve, const PetscReal X[2], 
   return t;
 }
 
+/* Changes of sign of the Bernstein coefficients of (X - y).tau, of the degree 5, but for positive factors: as many zeros
+   at most, and an even number less. */
+static PetscInt SignChanges(const LamSplineCurve *curve, const PetscReal X[2])
+{
+  PetscReal z[LAM_SPAN][2], q[LAM_SPAN - 1][2], w[6];
+  PetscInt changes = 0;
+
+  for (PetscInt d = 0; d < 2; ++d) {
+    const PetscReal a1 = curve->a[1][d] / 3.0, a2 = curve->a[2][d] / 3.0;
+
+    q[0][d] = a1;
+    q[1][d] = a1 + a2;
+    q[2][d] = a1 + 2.0 * a2 + curve->a[3][d];
+    z[0][d] = X[d] - curve->a[0][d];
+    for (PetscInt k = 0; k < 3; ++k) z[k + 1][d] = z[k][d] - q[k][d];
+  }
+  w[0] = Dot(z[0], q[0]);
+  w[1] = 2.0 * Dot(z[0], q[1]) + 3.0 * Dot(z[1], q[0]);
+  w[2] = Dot(z[0], q[2]) + 6.0 * Dot(z[1], q[1]) + 3.0 * Dot(z[2], q[0]);
+  w[3] = 3.0 * Dot(z[1], q[2]) + 6.0 * Dot(z[2], q[1]) + Dot(z[3], q[0]);
+  w[4] = 3.0 * Dot(z[2], q[2]) + 2.0 * Dot(z[3], q[1]);
+  w[5] = Dot(z[3], q[2]);
+  for (PetscInt k = 1; k < 6; ++k) changes += (w[k] > 0.0) != (w[k - 1] > 0.0);
+  return changes;
+}
+
 PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2], PetscBool has_one,
                            PetscReal *t)
 {
-  const PetscInt pieces = has_one ? 1 : PIECES;
   PetscReal least = PETSC_INFINITY, at[2] = {ends[0], ends[0]}, slope, y[2], tau[2], bend[2];
 
-  for (PetscInt k = 1; k <= pieces; ++k) {
-    const PetscReal low = (PetscReal)(k - 1) / (PetscReal)pieces, high = (PetscReal)k / (PetscReal)pieces;
+  if (has_one || SignChanges(curve, X) < 2) {
+    if (!(ends[0] > 0.0) || ends[1] > 0.0) return PETSC_FALSE;
+    *t = RootBetween(curve, X, 0.0, 1.0, ends);
+    return PETSC_TRUE;
+  }
+  for (PetscInt k = 1; k <= PIECES; ++k) {
+    const PetscReal low = (PetscReal)(k - 1) / PIECES, high = (PetscReal)k / PIECES;
 
     at[0] = at[1];
-    at[1] = k == pieces ? ends[1] : Along(curve, X, high, &slope);
+    at[1] = k == PIECES ? ends[1] : Along(curve, X, high, &slope);
     if (!(at[0] > 0.0) || at[1] > 0.0) continue;
 
     const PetscReal root = RootBetween(curve, X, low, high, at);

@@ -235,8 +235,8 @@ static void PlaceControl(const LamWalls *walls, const PetscReal F[9], const Pets
   }
 }
 
-/* Box, normal and top of a span from its Bezier points: it lies within their hull, and its tangents within that of
-   their differences. */
+/* What a span lies within, from its Bezier points: it lies within their hull, and its tangents within that of their
+   differences. */
 static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
 {
   PetscReal p[LAM_SPAN][2], length, leg[LAM_SPAN - 1];
@@ -254,6 +254,13 @@ static void Bound(const PetscReal c[LAM_SPAN][2], LamWallSpan *span)
 
   for (PetscInt a = 0; a < LAM_SPAN - 1; ++a)
     leg[a] = (p[a + 1][0] - p[a][0]) * chord[0] + (p[a + 1][1] - p[a][1]) * chord[1];
+  for (PetscInt e = 0; e < 2; ++e) {
+    PetscReal *b = span->bend[e];
+
+    for (PetscInt d = 0; d < 2; ++d) b[d] = c[e][d] - 2.0 * c[e + 1][d] + c[e + 2][d];
+    span->least[e] = PETSC_MAX_REAL;
+    for (PetscInt a = 0; a < LAM_SPAN; ++a) span->least[e] = PetscMin(span->least[e], b[0] * p[a][0] + b[1] * p[a][1]);
+  }
   span->outward[0] = span->outward[1] = span->slowest = 0.0;
   span->top = PETSC_MAX_REAL;
   if (!(leg[0] > 0.0 && leg[1] >= 0.0 && leg[2] > 0.0)) return;
@@ -275,10 +282,6 @@ static void PlaceSpan(LamWalls *walls, PetscInt loop, PetscInt i)
   GatherSpan(walls, loop, i, c);
   LamSplineCurveOf((const PetscReal(*)[2])c, &span->curve);
   Bound((const PetscReal(*)[2])c, span);
-  for (PetscInt d = 0; d < 2; ++d) {
-    span->bend[0][d] = 2.0 * span->curve.a[2][d];
-    span->bend[1][d] = span->bend[0][d] + 6.0 * span->curve.a[3][d];
-  }
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q)
     LamSplineSum(walls->at[q].N, (const PetscReal(*)[2])c, span->point[q]);
   if (i % GROUP == 0) *group = nothing;
@@ -351,34 +354,31 @@ static inline PetscReal AlongStart(const LamWallSpan *span, const PetscReal X[2]
   return (X[0] - a[0][0]) * a[1][0] + (X[1] - a[0][1]) * a[1][1];
 }
 
-/* Whether the distance of X has one minimum on a span at most: (X - y).tau falls everywhere on it, by tau.tau - (X -
-   y).y_uu. */
-static inline PetscBool HasOneMinimum(const LamWallSpan *span, const PetscReal X[2])
+/* Whether the distance of each point X of a box has one minimum on a span at most: (X - y).tau falls everywhere on it,
+   by tau.tau - (X - y).y_uu. */
+static inline PetscBool HasOneMinimum(const LamWallSpan *span, const PetscReal low[2], const PetscReal high[2])
 {
-  const LamBox *box = &span->box;
   PetscReal most = -PETSC_MAX_REAL;
 
   for (PetscInt e = 0; e < 2; ++e) {
-    PetscReal sum = 0.0;
+    const PetscReal *b = span->bend[e];
 
-    for (PetscInt d = 0; d < 2; ++d)
-      sum += span->bend[e][d] * (X[d] - (span->bend[e][d] > 0.0 ? box->low[d] : box->high[d]));
-    most = PetscMax(most, sum);
+    most = PetscMax(most, b[0] * (b[0] > 0.0 ? high[0] : low[0]) + b[1] * (b[1] > 0.0 ? high[1] : low[1]) - span->least[e]);
   }
   return (PetscBool)(most < span->slowest);
 }
 
-/* The gap of X to its closest point on span j of a loop. PETSC_FALSE: it is on another span. */
+/* The gap of X to its closest point on span j of a loop. PETSC_FALSE: it is on another span. has_one: HasOneMinimum is
+   known. */
 static inline PetscBool FindGap(const LamWalls *walls, PetscInt loop, PetscInt j, const PetscReal X[2],
-                                LamTouchGap *gap)
+                                PetscBool has_one, LamTouchGap *gap)
 {
   const LamWallSpan *first = &walls->span[walls->first[loop]], *span = first + j;
   const LamWallSpan *next = j + 1 == LamWallsSpans(walls, loop) ? first : span + 1;
   const PetscReal ends[2] = {AlongStart(span, X), AlongStart(next, X)};
-  const PetscBool has_one = HasOneMinimum(span, X);
   PetscReal t;
 
-  if (has_one && (!(ends[0] > 0.0) || ends[1] > 0.0)) return PETSC_FALSE;
+  has_one = (PetscBool)(has_one || HasOneMinimum(span, X, X));
   if (!LamSplineClosest(&span->curve, X, ends, has_one, &t)) return PETSC_FALSE;
   LamTouchGapAt(&span->curve, X, t, gap);
   return PETSC_TRUE;
@@ -413,7 +413,7 @@ static PetscBool IsNearer(const Pair *p, const PetscReal X[2], PetscInt j, Petsc
       LamTouchGap gap;
 
       if (k == j || walls->gone[walls->first[p->other] + k] || !Meet(&near, &first[k].box)) continue;
-      if (FindGap(walls, p->other, k, X, &gap) && PetscAbsReal(gap.gap) < depth) return PETSC_TRUE;
+      if (FindGap(walls, p->other, k, X, PETSC_FALSE, &gap) && PetscAbsReal(gap.gap) < depth) return PETSC_TRUE;
     }
   }
   return PETSC_FALSE;
@@ -428,17 +428,18 @@ static PetscBool Counts(const Pair *p, const PetscReal X[2], PetscInt j, PetscRe
   return (PetscBool)(gap >= 0.0 || (gap >= -DEEPEST && !IsNearer(p, X, j, -gap)));
 }
 
-/* Points of one span against one span of the other loop. */
-static void VisitSpans(const Pair *p, PetscInt i, PetscInt j)
+/* Points of one span, within a box, against one span of the other loop. */
+static void VisitSpans(const Pair *p, PetscInt i, PetscInt j, const LamBox *here)
 {
   const LamWalls *walls = p->walls;
   const LamWallSpan *own = &walls->span[walls->first[p->loop] + i], *other = &walls->span[walls->first[p->other] + j];
+  const PetscBool has_one = HasOneMinimum(other, here->low, here->high);
   LamTouching touch;
 
   for (PetscInt q = 0; q < LAM_TOUCH_POINTS; ++q) {
     const PetscReal X[2] = {own->point[q][0] - p->moved[0], own->point[q][1] - p->moved[1]};
 
-    if (IsBeyond(p, other, X, X) || !FindGap(walls, p->other, j, X, &touch.gap)) continue;
+    if (IsBeyond(p, other, X, X) || !FindGap(walls, p->other, j, X, has_one, &touch.gap)) continue;
     if (!Counts(p, X, j, touch.gap.gap)) continue;
     touch.loop = p->loop;
     touch.span = i;
@@ -473,7 +474,7 @@ static void VisitGroups(const Pair *p, PetscInt a, PetscInt b)
 
       if (!walls->gone[first[1] + j] && !(p->itself && AreJoined(walls, p->loop, i, j)) && Meet(&near, &other->box) &&
           !IsBeyond(p, other, here.low, here.high))
-        VisitSpans(p, i, j);
+        VisitSpans(p, i, j, &here);
     }
   }
 }

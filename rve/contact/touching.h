@@ -48,6 +48,7 @@ typedef struct {
   PetscReal outward[2]; /* normal of the chord */
   PetscReal top;        /* most of outward.y; infinite if a normal of the span is not within 90 degrees of outward */
   PetscReal bend[2][2]; /* y_uu at both ends, between which it is linear */
+  PetscReal least[2];   /* of y_uu.y with either */
   PetscReal slowest;    /* at most the square of y_u everywhere */
 } LamWallSpan;
 
