@@ -54,6 +54,7 @@ static void PrintMicrostructures(const json_t *list)
            1e-6 * json_number_value(json_object_get(item, "stress_unit_Pa")));
     json_object_foreach((json_t *)description, name, value)
     {
+      const size_t faces = json_array_size(json_object_get(value, "partner")); /* of cells of any shape */
       char text[256];
       size_t n;
 
@@ -62,9 +63,11 @@ static void PrintMicrostructures(const json_t *list)
         continue;
       }
       n = json_dumpb(value, text, sizeof(text) - 1, JSON_ENCODE_ANY | JSON_REAL_PRECISION(6));
-
       text[n < sizeof(text) ? n : 0] = '\0';
-      printf("  %-18s %s\n", name, text);
+      if (faces)
+        printf("  %-18s %d faces (--json lists them)\n", name, (int)faces);
+      else
+        printf("  %-18s %s\n", name, n < sizeof(text) ? text : "--json has it");
     }
   }
 }

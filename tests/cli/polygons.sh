@@ -90,6 +90,8 @@ compare 0 'contact, cohesion: 0.005 MPa'
 compare 10 'contact, sharpness: smooth'
 compare 0 "$brittle"
 compare patch 0 "$brittle"
+expect 0 "$lamella" rve polygons.yaml --quiet --no-estimate -o polygons.h5
+expect 0 -o '^  tissue  *36 faces (--json lists them)' "$lamella" info polygons.h5
 # stress given: F is what the solver finds
 compare 0 'contact, cohesion: 0.005 MPa' prescribed '' 'load:
   - {F: [[1.05, 0.1], [0, free]], P: [[x, x], [x, -0.05 MPa]]}
