@@ -5,7 +5,7 @@
 
 package scipy
 
-"$python" - "$lamella" "${LAMELLA_TISSUES:-12}" <<'PYTHON' || fail "random tissue in contact"
+"$python" - "$lamella" "${LAMELLA_TISSUES:-6}" <<'PYTHON' || fail "random tissue in contact"
 import json, random, subprocess, sys
 import numpy as np
 from lamella.tissue.make import Asked, make
