@@ -97,8 +97,8 @@ static PetscReal RootBetween(const LamSplineCurve *curve, const PetscReal X[2], 
   return t;
 }
 
-/* Changes of sign of the Bernstein coefficients of (X - y).tau, of the degree 5, but for positive factors: as many zeros
-   at most, and an even number less. */
+/* Changes of sign of the Bernstein coefficients of (X - y).tau, of the degree 5, but for positive factors: as many
+   zeros at most, and an even number less. */
 static PetscInt SignChanges(const LamSplineCurve *curve, const PetscReal X[2])
 {
   PetscReal z[LAM_SPAN][2], q[LAM_SPAN - 1][2], w[6];
@@ -123,8 +123,8 @@ static PetscInt SignChanges(const LamSplineCurve *curve, const PetscReal X[2])
   return changes;
 }
 
-PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2], PetscBool has_one,
-                           PetscReal *t)
+PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2],
+                           PetscBool has_one, PetscReal *t)
 {
   PetscReal least = PETSC_INFINITY, at[2] = {ends[0], ends[0]}, slope, y[2], tau[2], bend[2];
 

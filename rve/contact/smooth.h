@@ -56,8 +56,8 @@ static inline void LamSplineAt(const LamSplineCurve *curve, PetscReal t, PetscRe
 /* t of the point of a span where the distance of X is least of its minima, in which (X - y).tau goes from above 0 to
    below; its values at both ends are given, so that spans that follow each other agree. PETSC_FALSE: there is none.
    has_one: there is one at most, otherwise there may be some where the span is bent sharply. */
-PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2], PetscBool has_one,
-                           PetscReal *t);
+PetscBool LamSplineClosest(const LamSplineCurve *curve, const PetscReal X[2], const PetscReal ends[2],
+                           PetscBool has_one, PetscReal *t);
 
 /* Gap of a point X from the closest point of a span, and what its variation needs. */
 typedef struct {

@@ -363,7 +363,8 @@ static inline PetscBool HasOneMinimum(const LamWallSpan *span, const PetscReal l
   for (PetscInt e = 0; e < 2; ++e) {
     const PetscReal *b = span->bend[e];
 
-    most = PetscMax(most, b[0] * (b[0] > 0.0 ? high[0] : low[0]) + b[1] * (b[1] > 0.0 ? high[1] : low[1]) - span->least[e]);
+    most = PetscMax(most,
+                    b[0] * (b[0] > 0.0 ? high[0] : low[0]) + b[1] * (b[1] > 0.0 ? high[1] : low[1]) - span->least[e]);
   }
   return (PetscBool)(most < span->slowest);
 }

@@ -286,7 +286,8 @@ static double ClosestTo(const Arc *arc)
   double X[2], t;
 
   PointOf(arc, X);
-  assert_true(LamSplineClosest(&curve, X, (double[]){AlongAt(SpanOf(arc), X, 0.0), AlongAt(SpanOf(arc), X, 1.0)}, PETSC_TRUE, &t));
+  assert_true(LamSplineClosest(&curve, X, (double[]){AlongAt(SpanOf(arc), X, 0.0), AlongAt(SpanOf(arc), X, 1.0)},
+                               PETSC_TRUE, &t));
   return t;
 }
 

@@ -298,7 +298,8 @@ static double GapFrom(const double c[LAM_SPAN][2], const double X[2])
   double t;
 
   LamSplineCurveOf(c, &curve);
-  if (!LamSplineClosest(&curve, X, (double[]){AlongAt(c, 0.0, X), AlongAt(c, 1.0, X)}, PETSC_FALSE, &t)) return INFINITY;
+  if (!LamSplineClosest(&curve, X, (double[]){AlongAt(c, 0.0, X), AlongAt(c, 1.0, X)}, PETSC_FALSE, &t))
+    return INFINITY;
   LamTouchGapAt(&curve, X, t, &gap);
   return gap.gap;
 }
