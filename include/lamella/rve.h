@@ -63,6 +63,13 @@ LAM_EXPORT PetscErrorCode LamRVESetInterrupt(LamRVE rve, PetscBool (*interrupt)(
 /* Allows the lumens to be sealed, by reserving rows for their pressures in the matrix. Call before LamRVESetUp.
    Default: off. */
 LAM_EXPORT PetscErrorCode LamRVESetSealable(LamRVE rve, PetscBool on);
+/*
+  Allows any F, as cells are prisms along X3, and makes all entries of the tangent known. Call before LamRVESetUp.
+  Walls whose fibres leave the section (fibre_angle) turn it on. Default: off; F is that of plane strain with any F33,
+  and entries of the tangent with an out-of-plane shear are unknown. Indicators, positions and wall measures are those
+  in the section across the present axis of the cells, turned by the least rotation.
+*/
+LAM_EXPORT PetscErrorCode LamRVESetOutOfPlane(LamRVE rve, PetscBool on);
 /* Builds the mesh and the sparsity pattern; symbolic factorisation takes place in the first solve. */
 LAM_EXPORT PetscErrorCode LamRVESetUp(LamRVE rve);
 /*
@@ -224,7 +231,8 @@ LAM_EXPORT PetscErrorCode LamRVEGetInterface(LamRVE rve, LamRVEState state, Pets
                                     counter-clockwise around its cell, with respect to the wall across
     normal_traction  [face][point]  traction of the lamella alone, without contact pressure, nominal (per reference
     shear_traction   [face][point]  length), in C1 + C2: >= 0, and with the sign of the slip
-    normal_force     [face]  integral of the normal traction by the Gauss points, per thickness, in C1 + C2 times apothem
+    normal_force     [face]  integral of the normal traction by the Gauss points, per thickness, in C1 + C2 times
+  apothem
 
   Jumps are those of the nodes; the others are interpolated linearly between Gauss points. PETSC_ERR_ARG_WRONGSTATE:
   the law of the interface is another one, which LamRVEGetInterfaceLaw tells.

@@ -458,6 +458,7 @@ typedef struct {
   PetscInt load_count;
   LamLoad *loads;             /* states 1..load_count with ramps expanded; owned */
   LamStressControl *controls; /* of the loads; NULL: F is given in all of them; owned */
+  PetscBool out_of_plane;     /* one of them has a shear out of the plane */
   PetscInt dissipating;       /* number of the last loads, a ramp that is followed by what is dissipated; 0: none */
   PetscReal dissipated_faces; /* in each of its states */
   PetscBool inflate;          /* the first load is P = 0, in the plane; F of the others counts from there, ... */

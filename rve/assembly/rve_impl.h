@@ -4,6 +4,7 @@
     assembly.c     sums over elements: energy, residual, tangent
     turgor.c       areas of lumens, pressures of sealed ones
     smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
+    antiplane.c    the third component of positions
     lamella.c      the lamella between facing walls, which breaks
     part.c         sums and linear systems of a part of the cells
     contact.c      the exact law between facing walls: pairs, junctions, active set
@@ -25,8 +26,8 @@
 #include "linear.h"
 #include "smooth_contact.h"
 
-#define LAM_LARGE 2000     /* elements, from which a coarser mesh is solved first and only one factor is kept */
-#define LAM_ENERGY_COUNT 8 /* Psi, then its derivatives with respect to F11, F12, F21, F22, F33, p, g */
+#define LAM_LARGE 2000      /* elements, from which a coarser mesh is solved first and only one factor is kept */
+#define LAM_ENERGY_COUNT 10 /* Psi, then its derivatives with respect to F11, F12, F21, F22, F33, p, g, F31, F32 */
 
 /* Positions of one material point and the load they equilibrate. */
 struct LamRVEState_s {
@@ -49,6 +50,9 @@ struct LamRVEState_s {
   PetscInt cells;                     /* of tissue whose walls tear, else 0 */
   PetscBool *burst;                   /* [cells] */
   PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
+  PetscInt axial;                     /* length of z: [class], of an RVE without a third component 0 */
+  PetscReal *z;
+  LamLoad given; /* `load` as it was given, before it was turned (out_of_plane.c) */
 };
 
 typedef struct {
@@ -81,6 +85,8 @@ typedef struct {
   PetscInt moving_unknowns, unknowns, *unknown; /* positions of those that move, and of all, in the same order */
 } LamPart;
 
+typedef struct LamAntiplane_s *LamAntiplane;
+
 struct LamRVE_s {
   MPI_Comm comm;
   LamMicrostructure micro;
@@ -88,6 +94,7 @@ struct LamRVE_s {
   PetscReal tolerance; /* requested tolerance of solves; 0: rounding */
   LamWanted wanted;    /* requested parts of responses */
   PetscBool has_micro, is_set_up, monitor;
+  PetscBool out_of_plane; /* requested: any F, and a full tangent */
   const LamWallLaw **law; /* [cell]; the array is owned, the laws are not */
   PetscReal stiffest;     /* largest bulk or fibre modulus of any cell */
   PetscInt changes;       /* number of changes of the moduli */
@@ -96,9 +103,10 @@ struct LamRVE_s {
   LamElementStress *stress;     /* [element]: independent stresses of the current iteration */
   LamLinear *linear;            /* in use; one of `systems` */
   LamLinear systems[LAM_SYSTEMS];
-  LamSmooth *smooth;   /* the smooth law of contact; NULL for bonded tissue; owned */
-  LamContact *contact; /* the exact law; NULL for bonded tissue; owned */
-  LamLayer *layer;     /* the lamella of law `lamella`, else NULL; owned */
+  LamSmooth *smooth;      /* the smooth law of contact; NULL for bonded tissue; owned */
+  LamContact *contact;    /* the exact law; NULL for bonded tissue; owned */
+  LamLayer *layer;        /* the lamella of law `lamella`, else NULL; owned */
+  LamAntiplane antiplane; /* the third component of positions; NULL: they are plane; owned */
   LamBondRates *rates; /* solves are for the model of a material point, and set these; NULL: they are not; borrowed */
   LamRVE bonded;       /* two_step: the same tissue with bonded walls, created at its first use; owned */
   LamRVEState bonded_state; /* of `bonded`; owned */

@@ -115,6 +115,7 @@ void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscR
   SquareOf(p, dp, of_p, tangent, &t);
   out->normal = c / length;
   out->shear = p / length;
+  out->axial = 0.0;
   out->q = open * n.value + weight * t.value;
   out->r = pressed * n.value;
   for (PetscInt i = 0; i < 4; ++i) {
@@ -129,7 +130,9 @@ void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscR
 
 PetscReal LamJumpMode(const LamJump *jump, PetscReal beta, PetscReal before)
 {
-  return jump->q > 0.0 ? PetscMin(1.0, beta * beta * jump->shear * jump->shear / jump->q) : before;
+  const PetscReal slip = jump->shear * jump->shear + jump->axial * jump->axial;
+
+  return jump->q > 0.0 ? PetscMin(1.0, beta * beta * slip / jump->q) : before;
 }
 
 void LamCohesiveStepEvaluate(const LamEnvelope *e, PetscReal kappa, PetscReal q, LamCohesiveStep *step)

@@ -1,14 +1,12 @@
 /*
   The cohesive law of the middle lamella at one point (docs/theory/lamella.md).
 
-    delta = sqrt(<delta_n>^2 + beta^2 delta_t^2)      equivalent opening; beta: strength in shear over that in tension
-    T(delta)     envelope: stiffness k up to the strength sigma at delta_0 = sigma/k, then softening; its area is the
-                 energy G
-    kappa        largest delta so far; below it the law is linear through the origin: T = omega k delta, with the
-                 integrity omega = T(kappa)/(k kappa)
-  In mixed mode G depends on B, the share of shear in delta^2, by Benzeggagh and Kenane:
-    G = G_n + (G_t - G_n) B^eta.
-  B is that of the last accepted state, so that the energy of a step is a potential.
+    delta = sqrt(<delta_n>^2 + beta^2 (delta_t^2 + delta_3^2))   equivalent opening; beta: strength in shear over that
+  in tension T(delta)     envelope: stiffness k up to the strength sigma at delta_0 = sigma/k, then softening; its area
+  is the energy G kappa        largest delta so far; below it the law is linear through the origin: T = omega k delta,
+  with the integrity omega = T(kappa)/(k kappa) In mixed mode G depends on B, the share of shear in delta^2, by
+  Benzeggagh and Kenane: G = G_n + (G_t - G_n) B^eta. B is that of the last accepted state, so that the energy of a step
+  is a potential.
 
   Potential of a step from kappa_n, the work of T less what was dissipated before:
     phi = 1/2 omega k delta^2 + D(kappa) - D(kappa_n),    kappa = max(kappa_n, delta),
@@ -56,6 +54,7 @@ typedef struct {
   PetscReal q, dq[4], ddq[4][4];
   PetscReal r, dr[4], ddr[4][4]; /* <-delta_n>^2, likewise */
   PetscReal normal, shear;       /* delta_n and delta_t */
+  PetscReal axial;               /* delta_3, slip along the cells' axis, which is held; q contains beta^2 delta_3^2 */
 } LamJump;
 void LamJumpEvaluate(const PetscReal jump[2], const PetscReal tangent[2], PetscReal beta, LamJump *out);
 /* B of a jump; `before` where there is none. */

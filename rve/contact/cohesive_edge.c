@@ -70,6 +70,8 @@ static void Evaluate(const PetscReal X[][2], const PetscReal u[][2], const Petsc
                      const LamBond *bond, LamJump *jump, LamCohesiveStep *step)
 {
   FindJump(X, u, weight, bond->law.beta, jump);
+  jump->axial = bond->axial;
+  jump->q += PetscSqr(bond->law.beta * bond->axial);
   LamCohesiveStepEvaluate(&bond->now, bond->kappa, jump->q, step);
 }
 
@@ -80,6 +82,14 @@ void LamEdgePlaceEvaluate(const PetscReal X[][2], const PetscReal u[][2], PetscR
 
   WeighNodes(at, weight);
   Evaluate(X, u, (const PetscReal(*)[2])weight, bond, jump, step);
+}
+
+void LamEdgeJumpWeights(PetscInt q, PetscReal jump[LAM_EDGE_NODES])
+{
+  PetscReal weight[LAM_EDGE_NODES][2];
+
+  WeighNodes(place[q], weight);
+  for (PetscInt k = 0; k < LAM_EDGE_NODES; ++k) jump[k] = weight[k][0];
 }
 
 void LamEdgeSpread(PetscInt q, PetscReal factor, const PetscReal dz[4], PetscReal gradient[LAM_EDGE_DOFS])

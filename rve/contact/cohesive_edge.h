@@ -35,6 +35,7 @@ typedef struct {
   PetscReal kappa;       /* ... its kappa, ... */
   PetscReal pressing;    /* ... and its stiffness in compression, ... */
   PetscBool closes;      /* ... which damage leaves */
+  PetscReal axial;       /* slip along the cells' axis (antiplane.h) */
 } LamBond;
 /* Begins a step. */
 void LamBondTake(const LamBondHistory *history, LamBond *bond);
@@ -74,6 +75,9 @@ static inline void LamEdgePointEvaluate(const PetscReal X[][2], const PetscReal 
 
 /* The jump alone, at a place s in [0, 1] of the edge. */
 void LamEdgeJump(const PetscReal X[][2], const PetscReal u[][2], PetscReal s, PetscReal beta, LamJump *jump);
+
+/* Shape functions of a jump at point q: jump = sum weight[k] x_k. */
+void LamEdgeJumpWeights(PetscInt q, PetscReal weight[LAM_EDGE_NODES]);
 
 /* From the derivatives of a function of (jump, tangent) at point q, times a factor, those in the nodes. */
 void LamEdgeSpread(PetscInt q, PetscReal factor, const PetscReal dz[4], PetscReal gradient[LAM_EDGE_DOFS]);

@@ -16,6 +16,7 @@
   the work of the wall stresses on the relaxed mode of F, on which stiff walls do no work
   (docs/theory/homogenisation.md, Rounding).
 */
+#include "antiplane.h"
 #include "measure.h"
 #include <lamella/ellipticity.h>
 
@@ -262,7 +263,7 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
 /* Corrects L_F to first order to the solution near the positions, -= L_Fy K^-1 r, and with `derivatives` sets
    H = (L_qq - R^T K^-1 R) / V0. */
 static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c, PetscBool derivatives,
-                               PetscReal H[NQ][NQ])
+                               PetscReal H[NQ][NQ], LamAxialDerivatives *axial)
 {
   const PetscInt n = rve->linear->n, nq = c->nq;
   PetscReal *rhs, *solution, *R, *X; /* r and its solution, then the columns and theirs */
@@ -285,6 +286,13 @@ static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c,
     const PetscReal *columns[LAM_BOND_RATES] = {X, X + n, X + 2 * n, X + 3 * n, X + Q_TURGOR * n};
 
     PetscCall(LamBondRatesFind(rve, load, columns));
+  }
+  if (rve->antiplane) {
+    PetscCall(LamCondenseAxial(rve, load, derivatives ? nq : 0, X, axial));
+    for (PetscInt q = 0; q < nq; ++q) {
+      c->Lq[q] += axial->Lq[q];
+      for (PetscInt r = 0; r < nq; ++r) H[q][r] += axial->H[q][r] / rve->mesh.V0;
+    }
   }
   PetscCall(PetscFree2(rhs, solution));
   PetscFunctionReturn(0);
@@ -376,18 +384,45 @@ static void FillDerivatives(LamRVE rve, const PetscReal H[NQ][NQ], LamResponse *
   response->energy_turgor_cohesion = H[Q_TURGOR][Q_COHESION];
 }
 
+/* Derivatives with an index 3, in the frame of the section. */
+static void FillAxial(LamRVE rve, const LamLoad *load, const LamAxialDerivatives *axial, LamResponse *response)
+{
+  const PetscReal V0 = rve->mesh.V0;
+
+  for (PetscInt l = 0; l < 2; ++l) {
+    const PetscInt row = 6 + l;
+
+    response->P_turgor[row] = axial->H[LAM_AXIAL_G + l][Q_TURGOR] / V0;
+    response->P_cohesion[row] = axial->H[LAM_AXIAL_G + l][Q_COHESION] / V0;
+    for (PetscInt q = 0; q < LAM_F_COUNT; ++q)
+      response->tangent[9 * row + LamFComponent[q]] = response->tangent[9 * LamFComponent[q] + row] =
+          axial->H[LAM_AXIAL_G + l][q] / V0;
+    for (PetscInt m = 0; m < 2; ++m)
+      response->tangent[9 * row + 6 + m] = axial->H[LAM_AXIAL_G + l][LAM_AXIAL_G + m] / V0;
+  }
+  LamSectionComplete(load->F, response->P, response->tangent);
+  LamSectionCompleteStress(load->F, response->P_turgor);
+  LamSectionCompleteStress(load->F, response->P_cohesion);
+}
+
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const PetscBool derivatives = (PetscBool)((rve->wanted & LAM_WANT_DERIVATIVES) != 0);
   Condensation c = {0};
+  LamAxialDerivatives axial = {0};
   PetscReal H[NQ][NQ] = {{0}};
 
   PetscFunctionBeginUser;
   PetscCall(Assemble(rve, load, &c));
-  PetscCall(Condense(rve, load, &c, derivatives, H));
+  PetscCall(Condense(rve, load, &c, derivatives, H, &axial));
   for (PetscInt i = 0; i < 9; ++i) response->P[i] = 0.0;
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
+  for (PetscInt l = 0; l < 2 && rve->antiplane; ++l) response->P[6 + l] = axial.Lq[LAM_AXIAL_G + l] / rve->mesh.V0;
   if (derivatives) FillDerivatives(rve, (const PetscReal(*)[NQ])H, response);
+  if (derivatives && rve->antiplane)
+    FillAxial(rve, load, &axial, response);
+  else if (rve->antiplane)
+    LamSectionCompleteStress(load->F, response->P);
   PetscCall(PetscFree(c.R));
   response->energy = rve->energy / rve->mesh.V0;
   response->lumen_fraction = load->F[8] * c.lumen / rve->mesh.V0;

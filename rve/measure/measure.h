@@ -2,6 +2,7 @@
   Measures of a state.
 
     homogenise.c   stress, tangent and couplings by static condensation
+    section.c      stress and tangent with an index 3
     traction.c     largest means along faces; interface tractions of bonded faces
     failure.c      stretch, energy and tension of the walls, and whether they kink (wall_ellipticity.h)
     indicators.c   debonding: separation of cells
@@ -31,6 +32,24 @@ void LamCopyActive(LamRVE rve, const PetscReal column[], PetscReal copy[]);
 /* Sets energy, P and lumen fraction at rve->y, where the consistent tangent is assembled and factored, and, if
    requested, tangent and couplings. */
 PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *response);
+/* ---- section.c ---- */
+#define LAM_MOST_COLUMNS 8 /* of q: F11 F12 F21 F22 F33, turgor, cohesion, width of the smooth law; then ... */
+#define LAM_AXIAL_G LAM_MOST_COLUMNS /* ... F31, F32 */
+/* What z and G add to L_q and H = d2L/dq2, not divided by V0. ok: the state is stable against displacements along the
+   cells. */
+typedef struct {
+  PetscReal Lq[LAM_MOST_COLUMNS + 2], H[LAM_MOST_COLUMNS + 2][LAM_MOST_COLUMNS + 2];
+  PetscBool ok;
+} LamAxialDerivatives;
+/* At rve->y, whose consistent tangent is factored. solutions [nq][n]: K^-1 L_yq of the first nq columns; nq = 0: none.
+ */
+PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, const PetscReal solutions[],
+                                LamAxialDerivatives *out);
+/* Components 13 and 23 of P, and of a tensor that is linear in it, from the others in the frame of the section. */
+void LamSectionCompleteStress(const PetscReal F[9], PetscReal P[9]);
+/* The same of P, and rows and columns 13 and 23 of the tangent A. */
+void LamSectionComplete(const PetscReal F[9], PetscReal P[9], PetscReal A[81]);
+
 /* Whether a value exceeds that of the location reported so far by more than rounding (C1 + C2 or apothems). Among
    locations that are equal by symmetry the first one is reported, regardless of the last digits. Every value exceeds
    -PETSC_MAX_REAL. */

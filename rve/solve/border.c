@@ -71,8 +71,7 @@ static void SetStep(LamRVE rve, LamBorder *border, const PetscReal dq[], PetscRe
 PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs[], PetscReal solution[])
 {
   const PetscInt n = rve->linear->n;
-  PetscReal S[LAM_F_COUNT][LAM_F_COUNT], w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT], b[LAM_F_COUNT],
-      dq[LAM_F_COUNT] = {0};
+  PetscReal S[LAM_SMALL][LAM_SMALL], w[LAM_SMALL], V[LAM_SMALL][LAM_SMALL], b[LAM_SMALL], dq[LAM_SMALL] = {0};
 
   PetscFunctionBeginUser;
   if (!border) {
@@ -91,7 +90,7 @@ PetscErrorCode LamBorderSolve(LamRVE rve, LamBorder *border, const PetscReal rhs
       S[k][l] = S[l][k] =
           border->Lqq[border->q[k]][border->q[l]] - LamInnerProduct(n, R, border->solution + (l + 1) * n);
   }
-  PetscCall(LamSmallEigenvectors(border->count, (const PetscReal(*)[LAM_F_COUNT])S, w, V));
+  PetscCall(LamSmallEigenvectors(border->count, (const PetscReal(*)[LAM_SMALL])S, w, V));
   for (PetscInt k = 0; k < border->count; ++k) {
     const PetscReal stiffness = border->descend ? PetscMax(PetscAbsReal(w[k]), LEAST_STIFFNESS * rve->mesh.V0) : w[k];
     const PetscReal share = LamInnerProduct(border->count, V[k], b) / stiffness;
@@ -132,14 +131,14 @@ LamLoad LamBorderMoved(const LamBorder *border, const LamLoad *load, PetscReal a
   return moved;
 }
 
-PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_F_COUNT][LAM_F_COUNT], PetscReal w[LAM_F_COUNT],
-                                    PetscReal V[LAM_F_COUNT][LAM_F_COUNT])
+PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_SMALL][LAM_SMALL], PetscReal w[LAM_SMALL],
+                                    PetscReal V[LAM_SMALL][LAM_SMALL])
 {
-  PetscBLASInt size = (PetscBLASInt)n, stride = LAM_F_COUNT, length = 8 * LAM_F_COUNT, info;
-  PetscReal work[8 * LAM_F_COUNT];
+  PetscBLASInt size = (PetscBLASInt)n, stride = LAM_SMALL, length = 8 * LAM_SMALL, info;
+  PetscReal work[8 * LAM_SMALL];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(&V[0][0], &A[0][0], LAM_F_COUNT * LAM_F_COUNT));
+  PetscCall(PetscArraycpy(&V[0][0], &A[0][0], LAM_SMALL * LAM_SMALL));
   LAPACKsyev_("V", "U", &size, &V[0][0], &stride, w, work, &length, &info);
   PetscCheck(info >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev: argument %d", (int)-info);
   if (info > 0) w[0] = NAN; /* A is not finite: marks the result as invalid */

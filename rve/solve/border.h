@@ -14,6 +14,8 @@
 
 #include "measure.h"
 
+#define LAM_SMALL 9 /* most components of F that are free */
+
 typedef struct {
   LamLoad load;                /* of the iterate, with its current F */
   PetscInt count;              /* number of free components */
@@ -42,7 +44,7 @@ const PetscReal *LamBorderStep(const LamBorder *border);
 /* Returns `load` with F + alpha dF. */
 LamLoad LamBorderMoved(const LamBorder *border, const LamLoad *load, PetscReal alpha);
 /* Eigenvalues w, ascending, and unit eigenvectors V[k] of the symmetric A[n][n]. w[0] is NaN if LAPACK fails. */
-PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_F_COUNT][LAM_F_COUNT], PetscReal w[LAM_F_COUNT],
-                                    PetscReal V[LAM_F_COUNT][LAM_F_COUNT]);
+PetscErrorCode LamSmallEigenvectors(PetscInt n, const PetscReal A[LAM_SMALL][LAM_SMALL], PetscReal w[LAM_SMALL],
+                                    PetscReal V[LAM_SMALL][LAM_SMALL]);
 
 #endif

@@ -3,7 +3,7 @@
 
   Method. On a branch the change of Psi is the work of its derivatives, by the trapezoidal rule up to third order in the
   change of load. What a jump loses is missing:
-    defect = Psi_1 - Psi_0 - 1/2 (Psi,q_0 + Psi,q_1).(q_1 - q_0) < 0,     q = (F11, F12, F21, F22, F33, p, g).
+    defect = Psi_1 - Psi_0 - 1/2 (Psi,q_0 + Psi,q_1).(q_1 - q_0) < 0,     q = (F11, F12, F21, F22, F33, p, g, F31, F32).
   A large defect may also come from curvature. The interval is therefore bisected, and the half with the lower defect
   kept: a defect of curvature falls at least fourfold each time, that of a jump stays.
 */
@@ -20,24 +20,26 @@ void LamKeepEnergy(const LamResponse *response, LamRVEState state)
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) state->energy[1 + q] = response->P[LamFComponent[q]];
   state->energy[6] = response->energy_turgor;
   state->energy[7] = response->energy_cohesion;
+  for (PetscInt l = 0; l < 2; ++l) state->energy[8 + l] = state->axial ? response->P[6 + l] : 0.0;
 }
 
 /* Change of q from one load to another; returns the largest component. */
-static PetscReal Change(const LamLoad *from, const LamLoad *to, PetscReal dq[7])
+static PetscReal Change(const LamLoad *from, const LamLoad *to, PetscReal dq[9])
 {
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) dq[q] = to->F[LamFComponent[q]] - from->F[LamFComponent[q]];
   dq[5] = to->turgor - from->turgor;
   dq[6] = to->cohesion - from->cohesion;
-  return LamLargestEntry(7, dq);
+  for (PetscInt l = 0; l < 2; ++l) dq[7 + l] = to->F[6 + l] - from->F[6 + l];
+  return LamLargestEntry(9, dq);
 }
 
 LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to)
 {
   LamStepWork step = {0};
-  PetscReal dq[7];
+  PetscReal dq[9];
 
   step.largest = Change(&from->load, &to->load, dq);
-  for (PetscInt k = 0; k < 7; ++k) {
+  for (PetscInt k = 0; k < 9; ++k) {
     step.work += 0.5 * (from->energy[1 + k] + to->energy[1 + k]) * dq[k];
     step.turnover += PetscAbsReal(0.5 * (to->energy[1 + k] - from->energy[1 + k]) * dq[k]);
   }

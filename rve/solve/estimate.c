@@ -62,7 +62,7 @@ PetscErrorCode LamRVESolveFiner(LamRVE rve, LamRVEState from, LamRVE finer, LamR
   PetscCall(LamBeginResponse(finer, &load, state, response));
   PetscCall(LamProlong(rve, from, finer, state));
   if (state->solved)
-    PetscCall(LamRVESolve(finer, &load, state, response));
+    PetscCall(LamRVESolve(finer, rve->antiplane ? &from->given : &load, state, response));
   else
     PetscCall(LamRefuse(response, LAM_NOT_CONVERGED, "the finer mesh has no state near that of the coarser one"));
   PetscFunctionReturn(0);

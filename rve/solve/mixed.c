@@ -16,9 +16,7 @@ PetscErrorCode LamMixedLook(const LamStressControl *control, const LamResponse *
 {
   PetscFunctionBeginUser;
   *view = (LamMixedView){.potential = response->energy};
-  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
-    const PetscInt c = LamFComponent[q];
-
+  for (PetscInt c = 0; c < 9; ++c) {
     if (!control->given[c]) continue;
     view->excess[view->count] = response->P[c] - control->P[c];
     view->largest = PetscMax(view->largest, PetscAbsReal(view->excess[view->count]));
@@ -28,28 +26,40 @@ PetscErrorCode LamMixedLook(const LamStressControl *control, const LamResponse *
   for (PetscInt k = 0; k < view->count; ++k)
     for (PetscInt l = 0; l < view->count; ++l)
       view->A[k][l] = response->tangent[9 * view->component[k] + view->component[l]];
-  PetscCall(LamSmallEigenvectors(view->count, (const PetscReal(*)[LAM_F_COUNT])view->A, view->w, view->V));
+  PetscCall(LamSmallEigenvectors(view->count, (const PetscReal(*)[LAM_SMALL])view->A, view->w, view->V));
   PetscFunctionReturn(0);
 }
 
-/* Checks a control for plane-strain tissue; an invalid one is refused. */
-static PetscErrorCode CheckControl(const LamStressControl *control, LamResponse *response)
+/* Checks a control; an invalid one is refused. */
+static PetscErrorCode CheckControl(LamRVE rve, const LamStressControl *control, LamResponse *response)
 {
   static const PetscBool in_plane[9] = {1, 1, 0, 1, 1, 0, 0, 0, 1};
+  static const PetscInt pairs[3][2] = {{1, 3}, {2, 6}, {5, 7}};
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < 9; ++i) {
     if (!control->given[i]) continue;
-    if (!in_plane[i])
+    if (!in_plane[i] && !rve->antiplane)
       PetscCall(LamRefuse(response, LAM_INVALID_F, "P%s is prescribed; plane strain has no F%s to follow it",
                           component_names[i], component_names[i]));
     else if (PetscIsInfOrNanReal(control->P[i]))
       PetscCall(LamRefuse(response, LAM_INVALID_F, "the prescribed P%s is not finite", component_names[i]));
   }
-  if (control->given[1] && control->given[3])
-    PetscCall(
-        LamRefuse(response, LAM_INVALID_F, "F12 and F21 are both free: the tissue can rotate; prescribe one of them"));
+  for (PetscInt k = 0; k < 3; ++k)
+    if (control->given[pairs[k][0]] && control->given[pairs[k][1]])
+      PetscCall(LamRefuse(response, LAM_INVALID_F,
+                          "F%s and F%s are both free: the tissue can rotate; prescribe one of them",
+                          component_names[pairs[k][0]], component_names[pairs[k][1]]));
   PetscFunctionReturn(0);
+}
+
+PetscBool LamMixedIsOutOfPlane(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state)
+{
+  const LamLoad section = LamSectionLoad(load);
+  const PetscBool *given = control->given;
+
+  return (PetscBool)(rve->antiplane && (given[2] || given[5] || given[6] || given[7] || load->F[2] != 0.0 ||
+                                        load->F[5] != 0.0 || LamIsOutOfPlane(rve, &section, state)));
 }
 
 /* remedy: the free component whose prescription would make the state stable; -1: no single one does. */
@@ -61,11 +71,11 @@ static PetscErrorCode FindRemedy(const LamMixedView *view, PetscInt *remedy)
   *remedy = -1;
   if (view->count == 1) *remedy = view->component[0];
   for (PetscInt left_out = 0; left_out < view->count && view->count > 1; ++left_out) {
-    PetscReal A[LAM_F_COUNT][LAM_F_COUNT] = {{0}}, w[LAM_F_COUNT], V[LAM_F_COUNT][LAM_F_COUNT];
+    PetscReal A[LAM_SMALL][LAM_SMALL] = {{0}}, w[LAM_SMALL], V[LAM_SMALL][LAM_SMALL];
 
     for (PetscInt k = 0; k < view->count - 1; ++k)
       for (PetscInt l = 0; l < view->count - 1; ++l) A[k][l] = view->A[k + (k >= left_out)][l + (l >= left_out)];
-    PetscCall(LamSmallEigenvectors(view->count - 1, (const PetscReal(*)[LAM_F_COUNT])A, w, V));
+    PetscCall(LamSmallEigenvectors(view->count - 1, (const PetscReal(*)[LAM_SMALL])A, w, V));
     if (!(w[0] > highest)) continue;
     highest = w[0];
     *remedy = view->component[left_out];
@@ -109,7 +119,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
     PetscCall(LamRVEStateCreate(rve, &before));
     PetscCall(LamRVEStateCopy(state, before));
   }
-  PetscCall(LamMixedFast(rve, &guess, control, fast, response));
+  if (!LamMixedIsOutOfPlane(rve, load, control, state)) PetscCall(LamMixedFast(rve, &guess, control, fast, response));
   if (LamResponseHasFields(response)) PetscCall(CheckStability(control, response));
   if (response->status != LAM_CONVERGED && !LamWasStopped(response) && !rve->near_only) {
     const PetscInt iterations = response->newton_iterations, factorisations = response->factorisations;
@@ -145,8 +155,8 @@ PetscErrorCode LamRVESolveMixed(LamRVE rve, const LamLoad *load, const LamStress
   }
   rve->wanted |= LAM_WANT_DERIVATIVES; /* needed to assess stability under the prescribed stress */
   PetscCall(LamBeginResponse(rve, load, state, response));
-  PetscCall(LamCheckLoad(load, response));
-  if (response->status != LAM_INVALID_F) PetscCall(CheckControl(control, response));
+  PetscCall(LamCheckLoad(rve, load, response));
+  if (response->status != LAM_INVALID_F) PetscCall(CheckControl(rve, control, response));
   if (response->status != LAM_INVALID_F) PetscCall(SolveTiers(rve, load, control, state, response));
   if (!LamResponseHasFields(response)) /* free components of F are unknown */
     for (PetscInt i = 0; i < 9; ++i)

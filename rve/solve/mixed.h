@@ -9,13 +9,13 @@
 /* A solved state restricted to the free components of F. */
 typedef struct {
   PetscInt count;
-  PetscInt component[LAM_F_COUNT];       /* [count] their indices in a row-major 3 x 3 */
-  PetscReal excess[LAM_F_COUNT];         /* [count] P - prescribed P */
-  PetscReal largest;                     /* of |excess| */
-  PetscReal A[LAM_F_COUNT][LAM_F_COUNT]; /* dP/dF of the free components */
-  PetscReal w[LAM_F_COUNT];              /* [count] eigenvalues of A, ascending */
-  PetscReal V[LAM_F_COUNT][LAM_F_COUNT]; /* [count] their eigenvectors */
-  PetscReal potential;                   /* Psi - P.F; a stable state minimises it over these components */
+  PetscInt component[LAM_SMALL];     /* [count] their indices in a row-major 3 x 3 */
+  PetscReal excess[LAM_SMALL];       /* [count] P - prescribed P */
+  PetscReal largest;                 /* of |excess| */
+  PetscReal A[LAM_SMALL][LAM_SMALL]; /* dP/dF of the free components */
+  PetscReal w[LAM_SMALL];            /* [count] eigenvalues of A, ascending */
+  PetscReal V[LAM_SMALL][LAM_SMALL]; /* [count] their eigenvectors */
+  PetscReal potential;               /* Psi - P.F; a stable state minimises it over these components */
 } LamMixedView;
 
 /* ---- mixed.c ---- */
@@ -24,6 +24,9 @@ static inline PetscBool LamMixedIsStable(const LamMixedView *view)
 {
   return (PetscBool)(view->w[0] > LAM_MIXED_SOFTEST);
 }
+
+/* Whether positions have a third component: there is no fast tier then. */
+PetscBool LamMixedIsOutOfPlane(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state);
 
 /* ---- mixed_fast.c, mixed_safe.c ---- */
 /* Solve from `state` with the initial guess load->F; a solution replaces `state`. The response counts all iterations

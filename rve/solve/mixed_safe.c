@@ -10,6 +10,8 @@
   saddle is left along its softest mode. If a step is short, the fast tier is tried. So the tissue snaps to another
   stable state if there is one. Beyond a limit load there is none, and F diverges; the bracket of (i) is then reported.
 
+  Out of the plane there is (ii) alone.
+
   The iterates of a descent leave no damage in a lamella: all have the history of the state that it started from.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
@@ -43,13 +45,14 @@ typedef struct {
   const LamStressControl *control;
   const LamLoad *load;
   Iterate now, next;
-  PetscReal step[LAM_F_COUNT], slope, longest; /* descent step, its slope, its largest component before limiting */
-  PetscReal reached, failed;                   /* path parameters of the last stable state and of the next failure */
-  PetscReal first_stiffness, stiffness;        /* at the previous state and at `reached` */
-  PetscReal earlier, earlier_stiffness;        /* path parameter before `reached`, and the stiffness there */
-  char refusal[192];                           /* reason of the last failed solve */
-  PetscInt iterations, factorisations, most;   /* most: iteration limit of the current phase */
-  PetscBool stopped;                           /* by the interrupt; no further solves */
+  PetscReal step[LAM_SMALL], slope, longest; /* descent step, its slope, its largest component before limiting */
+  PetscReal reached, failed;                 /* path parameters of the last stable state and of the next failure */
+  PetscReal first_stiffness, stiffness;      /* at the previous state and at `reached` */
+  PetscReal earlier, earlier_stiffness;      /* path parameter before `reached`, and the stiffness there */
+  char refusal[192];                         /* reason of the last failed solve */
+  PetscInt iterations, factorisations, most; /* most: iteration limit of the current phase */
+  PetscBool descends;                        /* there is no fast tier */
+  PetscBool stopped;                         /* by the interrupt; no further solves */
 } Search;
 
 static void Count(Search *s, const LamResponse *response)
@@ -220,7 +223,8 @@ static PetscErrorCode Descend(Search *s, PetscBool *found)
     *found = (PetscBool)(there && stable);
     if (*found) break;
     FindStep(s);
-    if (!there && stable && s->longest <= NEAR_STEP) PetscCall(TryFast(s, &s->now.response.load, s->control, found));
+    if (!there && stable && s->longest <= NEAR_STEP && !s->descends)
+      PetscCall(TryFast(s, &s->now.response.load, s->control, found));
     if (*found) {
       Swap(s);
       break;
@@ -266,6 +270,10 @@ static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
   LamLoad load = *s->load;
 
   PetscFunctionBeginUser;
+  if (s->descends) {
+    PetscCall(DescendFrom(s, &load, state, found));
+    PetscFunctionReturn(0);
+  }
   if (s->rve->contact && !state->solved) {
     PetscCall(DescendFrom(s, &load, state, found));
     if (*found && LamMixedIsStable(&s->now.view)) PetscFunctionReturn(0);
@@ -325,7 +333,8 @@ static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                             LamResponse *response)
 {
-  Search s = {.rve = rve, .control = control, .load = load};
+  Search s = {
+      .rve = rve, .control = control, .load = load, .descends = LamMixedIsOutOfPlane(rve, load, control, state)};
   PetscBool found;
 
   PetscFunctionBeginUser;

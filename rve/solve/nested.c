@@ -9,6 +9,7 @@
   fine mesh is not solved, and the response gives the reason and the mesh. Sealed tissue, whose pressures are unknowns,
   and tissue whose walls tear do not use this method.
 */
+#include "antiplane.h"
 #include "contact_find.h"
 #include "mortar_impl.h"
 
@@ -34,9 +35,8 @@ static PetscReal PlaceIn(const LamMesh *other, const LamMesh *mesh, PetscInt fac
   return LamMeshPlace(other, face, LamMeshShare(mesh, face, 0.5 * (PetscReal)half));
 }
 
-/* Interpolates the coarse solution at a node of the fine mesh. */
-static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[], const LamMesh *fine, PetscInt node,
-                        PetscReal x[2])
+/* Interpolates the coarse solution at a node of the fine mesh; x[2]: the third component, 0 where there is none. */
+static void Interpolate(LamRVE coarse, const LamRVEState from, const LamMesh *fine, PetscInt node, PetscReal x[3])
 {
   const LamMesh *mesh = &coarse->mesh;
   const PetscInt radial = node % fine->radial_nodes, around = node / fine->radial_nodes;
@@ -46,14 +46,16 @@ static void Interpolate(LamRVE coarse, const LamLoad *load, const PetscReal y[],
 
   Quadratic(PlaceIn(mesh, fine, face, around % fine->face_nodes), mesh->along, &first[0], N[0]);
   Quadratic((PetscReal)(radial * mesh->through) / (PetscReal)(fine->radial_nodes - 1), mesh->through, &first[1], N[1]);
-  x[0] = x[1] = 0.0;
+  x[0] = x[1] = x[2] = 0.0;
   for (PetscInt a = 0; a < 3; ++a)
     for (PetscInt b = 0; b < 3; ++b) {
       const PetscInt ring = LamMeshRing(mesh, face, first[0] / 2, a);
-      PetscReal at[2];
+      const PetscInt of = LamMeshNode(mesh, ring, first[1] + b);
+      PetscReal at[3] = {0.0};
 
-      LamNodePosition(coarse, load->F, y, LamMeshNode(mesh, ring, first[1] + b), at);
-      for (PetscInt d = 0; d < 2; ++d) x[d] += N[0][a] * N[1][b] * at[d];
+      LamNodePosition(coarse, from->load.F, from->y, of, at);
+      if (from->axial) at[2] = LamAxialPosition(&from->load, from->z, mesh->node_class[of], &mesh->shift[2 * of]);
+      for (PetscInt d = 0; d < 3; ++d) x[d] += N[0][a] * N[1][b] * at[d];
     }
 }
 
@@ -62,11 +64,13 @@ static void ProlongPositions(LamRVE coarse, const LamRVEState from, LamRVE rve)
   const LamMesh *mesh = &rve->mesh;
 
   for (PetscInt node = 0; node < mesh->node_count; ++node) {
-    PetscReal x[2];
+    PetscReal x[3];
 
-    Interpolate(coarse, &from->load, from->y, mesh, node, x);
+    Interpolate(coarse, from, mesh, node, x);
     LamPlaceNode(rve, from->load.F, node, x, rve->y);
+    if (rve->antiplane) LamAntiplanePlace(rve, &from->load, node, x[2]);
   }
+  if (rve->antiplane) LamAntiplaneUse(rve);
 }
 
 /* Interpolates contact pressures and junction status. */

@@ -1,3 +1,4 @@
+#include "antiplane.h"
 #include "solve.h"
 #include "clock.h"
 
@@ -66,8 +67,8 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
   if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
-    rve->stiffest = PetscMax(rve->stiffest, PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) *
-                                                rve->mesh.longest);
+    rve->stiffest = PetscMax(rve->stiffest,
+                             PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) * rve->mesh.longest);
   PetscFunctionReturn(0);
 }
 
@@ -134,7 +135,18 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
                          &rve->residual));
+  for (PetscInt c = 0; c < cells; ++c)
+    if (LamCellWall(&rve->micro, c)->fibre_angle != 0.0) rve->out_of_plane = PETSC_TRUE;
+  if (rve->out_of_plane) PetscCall(LamAntiplaneCreate(rve, &rve->antiplane));
   PetscCall(PetscMalloc3(lumens, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESetOutOfPlane(LamRVE rve, PetscBool on)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!rve->is_set_up, PETSC_COMM_SELF, PETSC_ERR_ORDER, "LamRVESetOutOfPlane comes before LamRVESetUp");
+  rve->out_of_plane = on;
   PetscFunctionReturn(0);
 }
 
@@ -160,6 +172,7 @@ PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamW
   (*like)->interrupt = rve->interrupt;
   (*like)->interrupt_ctx = rve->interrupt_ctx;
   (*like)->seal.allowed = rve->seal.allowed;
+  (*like)->out_of_plane = rve->out_of_plane;
   PetscCall(LamRVESetUp(*like));
   PetscFunctionReturn(0);
 }
@@ -170,6 +183,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   if (!*rve) PetscFunctionReturn(0);
   PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
+  PetscCall(LamAntiplaneDestroy(&(*rve)->antiplane));
   PetscCall(LamLayerDestroy(&(*rve)->layer));
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamSmoothDestroy(&(*rve)->smooth));
@@ -213,7 +227,7 @@ PetscErrorCode LamRVECountUnknowns(const LamMicrostructure *micro, PetscInt *unk
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response)
+PetscErrorCode LamCheckLoad(LamRVE rve, const LamLoad *load, LamResponse *response)
 {
   const PetscReal *F = load->F, det = F[0] * F[4] - F[1] * F[3];
   PetscBool finite = PETSC_TRUE;
@@ -227,8 +241,9 @@ PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response)
   else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
     PetscCall(LamRefuse(response, LAM_INVALID_F, "cohesion is %g; it must be finite and not negative",
                         (double)load->cohesion));
-  else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
-    PetscCall(LamRefuse(response, LAM_INVALID_F, "F has out-of-plane shear, which plane strain does not carry"));
+  else if (!rve->antiplane && (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0))
+    PetscCall(LamRefuse(response, LAM_INVALID_F,
+                        "F has out-of-plane shear, which is not allowed for this RVE (LamRVESetOutOfPlane)"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
     PetscCall(LamRefuse(response, LAM_INVALID_F,
                         "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
@@ -315,6 +330,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   LamTakeJunctions(rve, state);
   LamLayerTake(rve, state);
+  LamTakeAxial(rve, state);
   PetscFunctionReturn(0);
 }
 
@@ -350,7 +366,8 @@ static PetscErrorCode FollowNested(LamRVE rve, const LamLoad *load, LamRVEState 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+/* A load in the frame of the section. */
+static PetscErrorCode SolveSection(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
 {
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
@@ -363,20 +380,36 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (looks) PetscCall(LamRVEStateCreate(rve, &before));
   if (looks) PetscCall(LamRVEStateCopy(state, before));
   PetscCall(LamBeginResponse(rve, load, state, response));
-  PetscCall(LamCheckLoad(load, response));
+  PetscCall(LamCheckLoad(rve, load, response));
   if (response->status == LAM_INVALID_F) {
     PetscCall(LamRVEStateDestroy(&before));
     PetscFunctionReturn(0);
   }
   /* after an interrupted solve, before the first assembly: the rest of an interrupted batch costs nothing */
   rve->work.stopped = (PetscBool)(interrupted && rve->interrupt && rve->interrupt(rve->interrupt_ctx));
-  if (!rve->work.stopped)
+  if (!rve->work.stopped && LamIsOutOfPlane(rve, load, state))
+    PetscCall(LamSolveOutOfPlane(rve, load, state, response));
+  else if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
   if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, NULL, state, response));
   if (looks && !rve->layer) PetscCall(LamSeeJump(rve, before, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response)
+{
+  const LamLoad given = *load;
+  LamLoad section = *load;
+
+  PetscFunctionBeginUser;
+  if (rve->antiplane) section = LamSectionLoad(load);
+  PetscCall(SolveSection(rve, &section, state, response));
+  if (!rve->antiplane) PetscFunctionReturn(0);
+  LamSectionTurnBack(&given, response);
+  if (LamResponseHasFields(response)) state->given = given;
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,7 @@
     lamella_step.c                        work and jumps of steps that break the lamella
     dissipate.c dissipate_*.c dissipate.h paths of F that are controlled by what the lamella dissipates
     nested.c                              initial guess from the solution on a coarser mesh
+    out_of_plane.c                        any F: the third component of positions
     mixed.c mixed_fast.c mixed_safe.c     states with some components of P prescribed
     estimate.c                            error estimate of P from a finer mesh
     rve.c state.c responder.c             the public interface
@@ -125,9 +126,22 @@ PetscErrorCode LamProlong(LamRVE coarse, LamRVEState from, LamRVE rve, LamRVESta
    becomes the solution on this mesh. */
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);
 
+/* ---- out_of_plane.c ---- */
+/* A load in the frame of the section: turned so that F_13 = F_23 = 0. */
+LamLoad LamSectionLoad(const LamLoad *load);
+/* Turns a response from the frame of the section to that of its load. */
+void LamSectionTurnBack(const LamLoad *load, LamResponse *response);
+/* Whether load (in the frame of the section), state or walls have a third component of positions. */
+PetscBool LamIsOutOfPlane(LamRVE rve, const LamLoad *load, const LamRVEState state);
+/* Sets z and G to those of a state; stores them. */
+void LamTakeAxial(LamRVE rve, const LamRVEState state);
+void LamKeepAxial(LamRVE rve, LamRVEState state);
+/* As LamFollowPath and LamContactFollowPath, with z. */
+PetscErrorCode LamSolveOutOfPlane(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
+
 /* ---- rve.c ---- */
-/* Checks a load for plane-strain tissue; an invalid one is refused. */
-PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response);
+/* Checks a load; an invalid one is refused. */
+PetscErrorCode LamCheckLoad(LamRVE rve, const LamLoad *load, LamResponse *response);
 /* Initialises the response and the solver's work data. Resets everything left by the previous solve, so that a result
    depends on load and state alone. */
 PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);

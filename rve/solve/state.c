@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 14
+#define MOST_PARTS 16
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -27,7 +27,9 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {&s->released, s->points ? sizeof(s->released) : 0},
                                 {&s->work, s->points ? sizeof(s->work) : 0},
                                 {&s->juice, s->points ? sizeof(s->juice) : 0},
-                                {s->burst, (size_t)s->cells * sizeof(*s->burst)}};
+                                {s->burst, (size_t)s->cells * sizeof(*s->burst)},
+                                {&s->given, s->axial ? sizeof(s->given) : 0},
+                                {s->z, (size_t)s->axial * sizeof(*s->z)}};
   PetscInt count = 0;
 
   for (PetscInt k = 0; k < MOST_PARTS; ++k)
@@ -103,8 +105,10 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   (*state)->faces = rve->contact ? rve->contact->face_count : 0;
   (*state)->points = rve->layer ? rve->layer->count : 0;
   (*state)->cells = rve->mesh.cuts ? rve->mesh.cell_count : 0;
-  PetscCall(PetscMalloc5((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
-                         &(*state)->hats, (*state)->points, &(*state)->history, (*state)->cells, &(*state)->burst));
+  (*state)->axial = rve->antiplane ? rve->mesh.class_count : 0;
+  PetscCall(PetscMalloc6((*state)->axial, &(*state)->z, (*state)->n, &(*state)->y, (*state)->multipliers,
+                         &(*state)->lambda, (*state)->faces, &(*state)->hats, (*state)->points, &(*state)->history,
+                         (*state)->cells, &(*state)->burst));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
@@ -119,6 +123,8 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
     state->hats[f][0] = rve->contact->faces[f].low;
     state->hats[f][1] = rve->contact->faces[f].high;
   }
+  PetscCall(PetscArrayzero(state->z, state->axial));
+  state->given = LAM_REFERENCE_LOAD;
   state->load = LAM_REFERENCE_LOAD;
   state->branch = 0;
   state->solved = PETSC_FALSE;
@@ -139,7 +145,7 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(PetscFree5((*state)->y, (*state)->lambda, (*state)->hats, (*state)->history, (*state)->burst));
+  PetscCall(PetscFree6((*state)->z, (*state)->y, (*state)->lambda, (*state)->hats, (*state)->history, (*state)->burst));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
@@ -156,6 +162,7 @@ void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState 
   state->solved = PETSC_TRUE;
   state->width = rve->contact && !rve->contact->exact ? rve->smooth->width : 0.0;
   LamLayerKeep(rve, load, state);
-  state->load = *load;
+  LamKeepAxial(rve, state);
+  state->load = state->given = *load;
   state->branch = branch;
 }

@@ -130,7 +130,7 @@ LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const L
 
   *valid = Kinematics(geometry, u, F33, H, dilation);
   if (!*valid) return;
-  law->matrix(wall, H, F33 - 1.0, PETSC_FALSE, &matrix);
+  MatrixKernel(geometry, law, wall, H, F33, PETSC_FALSE, &matrix);
   LamVolumetric(wall, dilation, PETSC_TRUE, &volume);
   Fibres(geometry, law, wall, H, F33, &fibre);
   LAM_EACH_POINT(g) sum[g] = geometry->weight[g] * (matrix.W[g] + volume.W[g] + fibre.W[g]);
@@ -262,19 +262,19 @@ LAM_CLONES static void ElementUpdateStress(const LamElementGeometry *geometry, c
                                            const PetscReal u[][2], const PetscReal du[][2], PetscReal F33,
                                            PetscReal dF33, PetscReal alpha, LamElementStress *stress)
 {
-  LamPoints H[4], F[4], dF[4], dE[4], dJ;
+  LamPoints H[4], F[4], dF[4], dE[4], dE33, dJ;
   PetscReal dc[LAM_PRESSURES], h[2][2];
-  const PetscReal dE33 = 2.0 * wall->dispersion * F33 * dF33;
 
   Gradient(geometry, u, H);
   Gradient(geometry, du, dF);
   Deformation(H, F);
   StructureTensor(geometry, wall, h);
   FibreStrainGradient((const PetscReal(*)[2])h, F, dE);
+  FibreStrain33(geometry, wall, F33, dE33);
   LAM_EACH_POINT(g)
   {
     const PetscReal strain =
-        dE[0][g] * dF[0][g] + dE[1][g] * dF[1][g] + dE[2][g] * dF[2][g] + dE[3][g] * dF[3][g] + dE33;
+        dE[0][g] * dF[0][g] + dE[1][g] * dF[1][g] + dE[2][g] * dF[2][g] + dE[3][g] * dF[3][g] + dE33[g] * dF33;
 
     dJ[g] = F33 * (F[3][g] * dF[0][g] - F[2][g] * dF[1][g] - F[1][g] * dF[2][g] + F[0][g] * dF[3][g]) +
             dF33 * (F[0][g] * F[3][g] - F[1][g] * F[2][g]);
@@ -327,9 +327,10 @@ LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, cons
                                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
                                         PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
 {
-  const PetscReal dE33 = 2.0 * wall->dispersion * F33;
+  const PetscReal d = wall->dispersion, s = FibreTilt(wall).s;
+  const PetscReal bend = 2.0 * (d + (1.0 - 3.0 * d) * s * s); /* d2E/dF33^2 */
   PetscReal Df[LAM_PRESSURES], HDf[LAM_PRESSURES], h[2][2], nodes[2][LAM_PADDED_NODES] = {{0.0}};
-  LamPoints H[4], F[4], dE[4], det, p, p_star, dp, first, second, mixed[4];
+  LamPoints H[4], F[4], dE[4], dE33, det, p, p_star, dp, first, second, mixed[4];
   LamKernel k;
 
   Gradient(geometry, u, H);
@@ -342,21 +343,22 @@ LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, cons
   AtPoints(geometry, stress->px, p);
   AtPoints(geometry, stress->p, p_star);
   AtPoints(geometry, HDf, dp);
-  law->matrix(wall, H, F33 - 1.0, PETSC_TRUE, &k);
+  MatrixKernel(geometry, law, wall, H, F33, PETSC_TRUE, &k);
   StructureTensor(geometry, wall, h);
   FibreStrainGradient((const PetscReal(*)[2])h, F, dE);
+  FibreStrain33(geometry, wall, F33, dE33);
   LAM_EACH_POINT(g)
   {
     const PetscReal w = geometry->weight[g];
 
-    first[g] = w * (k.P[4][g] + stress->sx[g] * dE33 + p[g] * det[g]);
-    second[g] = w * (k.A[4][4][g] + stress->dds[g] * dE33 * dE33 + 2.0 * wall->dispersion * stress->s[g]);
+    first[g] = w * (k.P[4][g] + stress->sx[g] * dE33[g] + p[g] * det[g]);
+    second[g] = w * (k.A[4][4][g] + stress->dds[g] * dE33[g] * dE33[g] + bend * stress->s[g]);
   }
   *force = Total(first);
   *ff = Total(second) + Df[0] * HDf[0] + Df[1] * HDf[1] + Df[2] * HDf[2];
   for (PetscInt r = 0; r < 4; ++r) LAM_EACH_POINT(g)
     {
-      mixed[r][g] = geometry->weight[g] * (k.A[r][4][g] + stress->dds[g] * dE33 * dE[r][g] +
+      mixed[r][g] = geometry->weight[g] * (k.A[r][4][g] + stress->dds[g] * dE33[g] * dE[r][g] +
                                            (p_star[g] + F33 * dp[g]) * CofactorSign(r) * F[3 - r][g]);
     }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g)

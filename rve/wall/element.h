@@ -30,7 +30,10 @@ typedef struct {
   LamPoints shape[2][LAM_ELEMENT_NODES];         /* [J][node]: the same; padded with the last point */
   LamPoints weight;                              /* quadrature weight times reference area; padding is zero */
   LamPoints psi[LAM_PRESSURES];
-  PetscReal fibre[2]; /* M */
+  PetscReal fibre[2]; /* M, in the section */
+  /* [2] shear g = (F31, F32) out of the section at the points, in a frame whose third axis is that of the cells; held
+     by all functions below but LamElementShear. NULL: none; borrowed */
+  const LamPoints *shear;
 } LamElementGeometry;
 
 /* Independent stresses, and the stresses at the last evaluated displacements. */
@@ -97,6 +100,15 @@ typedef struct {
 } LamWallPoint;
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                           const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);
+
+/* Derivatives with respect to the third component z of the positions of the nodes, g = sum z dN, at the u and the
+   stress of the last evaluation: dPi_e/dz, and its derivatives with respect to z, x and F33. */
+typedef struct {
+  PetscReal f[LAM_ELEMENT_NODES], K[LAM_ELEMENT_NODES][LAM_ELEMENT_NODES];
+  PetscReal mixed[LAM_ELEMENT_NODES][LAM_ELEMENT_DOFS], f33[LAM_ELEMENT_NODES];
+} LamElementAxial;
+void LamElementShear(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                     const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, LamElementAxial *out);
 
 /* Nine-node shape functions and their derivatives at (xi, eta) in [-1, 1]^2; node order of LamMesh. */
 void LamShape(PetscReal xi, PetscReal eta, PetscReal N[9], PetscReal dN[9][2]);

@@ -54,6 +54,7 @@ LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const L
   PointStress at;
 
   FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
+  TiltedExtension(geometry, wall, F33, extension);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal scale = 1.0 / (geometry->weight[g] * (F[0][g] * F[3][g] - F[1][g] * F[2][g]) * F33);
     const PetscReal s11 = scale * (at.P[0][g] * F[0][g] + at.P[1][g] * F[1][g]); /* sigma = P F^T / J */
@@ -74,7 +75,7 @@ void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law,
 LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
 {
-  LamPoints F[4], Fm[2], extension;
+  LamPoints F[4], Fm[2], extension, along; /* of the fibres, and of the wall in the section */
   LamElementStress local;
   PointStress at;
   PetscReal h[2][2];
@@ -82,14 +83,16 @@ LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, con
   FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
   AlongFibre(geometry, F, Fm);
   StructureTensor(geometry, wall, h);
+  for (PetscInt g = 0; g < LAM_POINTS; ++g) along[g] = extension[g];
+  TiltedExtension(geometry, wall, F33, extension);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
-    const PetscReal w = geometry->weight[g], I4 = 1.0 + extension[g], f[4] = {F[0][g], F[1][g], F[2][g], F[3][g]};
+    const PetscReal w = geometry->weight[g], I4 = 1.0 + along[g], f[4] = {F[0][g], F[1][g], F[2][g], F[3][g]};
     PetscReal tm[2], A[4][4];
 
     points[g].energy = at.energy[g];
     points[g].reference = w;
     points[g].volume = w * F33 * (f[0] * f[3] - f[1] * f[2]);
-    points[g].stretch = w * PetscSqrtReal(I4);
+    points[g].stretch = w * PetscSqrtReal(1.0 + extension[g]);
     /* w J sigma = (w P) F^T; m = Fm / |Fm| */
     for (PetscInt k = 0; k < 2; ++k) tm[k] = (Fm[0][g] * f[k] + Fm[1][g] * f[2 + k]) / I4; /* F^T m / |Fm| */
     points[g].tension =

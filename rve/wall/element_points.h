@@ -96,9 +96,46 @@ LAM_INLINE void Extension(const LamElementGeometry *geometry, const LamPoints H[
   }
 }
 
+/* Cosine and sine of the angle at which the fibres leave the section. */
+typedef struct {
+  PetscReal c, s;
+} Tilt;
+LAM_INLINE Tilt FibreTilt(const LamWall *wall)
+{
+  if (wall->fibre_angle == 0.0) return (Tilt){1.0, 0.0};
+  return (Tilt){PetscCosReal(wall->fibre_angle), PetscSinReal(wall->fibre_angle)};
+}
+
+/* Third component of F M, M = (c m, s): c g.m + s F33. */
+LAM_INLINE void FibreAxial(const LamElementGeometry *geometry, const LamWall *wall, PetscReal F33, LamPoints axial)
+{
+  const Tilt tilt = FibreTilt(wall);
+  const PetscReal *m = geometry->fibre;
+
+  LAM_EACH_POINT(g) axial[g] = tilt.s * F33;
+  if (!geometry->shear) return;
+  LAM_EACH_POINT(g) axial[g] += tilt.c * (geometry->shear[0][g] * m[0] + geometry->shear[1][g] * m[1]);
+}
+
+/* I4 - 1 of the fibres themselves, where they leave the section or there is shear out of it. */
+LAM_INLINE void TiltedExtension(const LamElementGeometry *geometry, const LamWall *wall, PetscReal F33,
+                                LamPoints extension)
+{
+  const Tilt tilt = FibreTilt(wall);
+  LamPoints axial;
+
+  if (wall->fibre_angle == 0.0 && !geometry->shear) return;
+  FibreAxial(geometry, wall, F33, axial);
+  LAM_EACH_POINT(g)
+  {
+    extension[g] = tilt.c * tilt.c * extension[g] + (axial[g] - tilt.s) * (axial[g] + tilt.s);
+  }
+}
+
 /*
-  Fibre strain E = h:C - 1 with h = d 1 + (1 - 3 d) M (x) M, d the dispersion, C with F33; E = I4 - 1 for d = 0.
-  Its derivatives are dE/dF = 2 F h, d2E/dFdF = 2 (1 (x) h), dE/dF33 = 2 d F33.
+  Fibre strain E = h:C - 1 with h = d 1 + (1 - 3 d) M (x) M, d the dispersion, C with F33 and g; E = I4 - 1 for d = 0.
+  With M = (c m, s) and q = c g.m + s F33 its derivatives are dE/dF = 2 F h, h in the plane, d2E/dFdF = 2 (1 (x) h),
+  dE/dF33 = 2 d F33 + 2 (1 - 3 d) s q, dE/dg = 2 d g + 2 (1 - 3 d) c q m.
 */
 LAM_INLINE void FibreStrain(const LamElementGeometry *geometry, const LamWall *wall, const LamPoints H[4],
                             PetscReal F33, LamPoints strain)
@@ -106,6 +143,7 @@ LAM_INLINE void FibreStrain(const LamElementGeometry *geometry, const LamWall *w
   const PetscReal d = wall->dispersion, out_of_plane = (F33 - 1.0) * (F33 + 1.0);
 
   Extension(geometry, H, strain);
+  TiltedExtension(geometry, wall, F33, strain);
   if (d == 0.0) return;
   LAM_EACH_POINT(g)
   {
@@ -113,15 +151,17 @@ LAM_INLINE void FibreStrain(const LamElementGeometry *geometry, const LamWall *w
 
     strain[g] += d * (2.0 * (H[0][g] + H[3][g]) + H2 + out_of_plane /* I1 - 3 */ - 3.0 * strain[g]);
   }
+  if (!geometry->shear) return;
+  LAM_EACH_POINT(g) strain[g] += d * (PetscSqr(geometry->shear[0][g]) + PetscSqr(geometry->shear[1][g]));
 }
 
 /* h, in the plane. */
 LAM_INLINE void StructureTensor(const LamElementGeometry *geometry, const LamWall *wall, PetscReal h[2][2])
 {
-  const PetscReal *m = geometry->fibre, d = wall->dispersion;
+  const PetscReal *m = geometry->fibre, d = wall->dispersion, c = FibreTilt(wall).c;
 
   for (PetscInt j = 0; j < 2; ++j)
-    for (PetscInt l = 0; l < 2; ++l) h[j][l] = d * (PetscReal)(j == l) + (1.0 - 3.0 * d) * m[j] * m[l];
+    for (PetscInt l = 0; l < 2; ++l) h[j][l] = d * (PetscReal)(j == l) + (1.0 - 3.0 * d) * c * c * m[j] * m[l];
 }
 
 /* dE/dF = 2 F h. */
@@ -131,6 +171,19 @@ LAM_INLINE void FibreStrainGradient(const PetscReal h[2][2], const LamPoints F[4
     {
       dE[r][g] = 2.0 * (F[r - r % 2][g] * h[0][r % 2] + F[r - r % 2 + 1][g] * h[1][r % 2]);
     }
+}
+
+/* dE/dF33. */
+LAM_INLINE void FibreStrain33(const LamElementGeometry *geometry, const LamWall *wall, PetscReal F33, LamPoints dE33)
+{
+  const PetscReal share = 2.0 * (1.0 - 3.0 * wall->dispersion) * FibreTilt(wall).s;
+
+  LAM_EACH_POINT(g) dE33[g] = 2.0 * wall->dispersion * F33;
+  if (share == 0.0) return;
+  LamPoints axial;
+
+  FibreAxial(geometry, wall, F33, axial);
+  LAM_EACH_POINT(g) dE33[g] += share * axial[g];
 }
 
 /* Energies and stresses of the fibres at all points; zero without fibres. */
@@ -144,6 +197,22 @@ LAM_INLINE void Fibres(const LamElementGeometry *geometry, const LamWallLaw *law
     law->fibre(wall, strain, fibre);
   else
     LAM_EACH_POINT(g) fibre->W[g] = fibre->d[g] = fibre->dd[g] = 0.0;
+}
+
+/* The matrix, with what shear out of the section adds to it. */
+LAM_INLINE void MatrixKernel(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
+                             const LamPoints H[4], PetscReal F33, PetscBool derivatives, LamKernel *out)
+{
+  LamShearKernel more;
+
+  law->matrix(wall, H, F33 - 1.0, derivatives, out);
+  if (!geometry->shear) return;
+  law->shear(wall, H, F33 - 1.0, geometry->shear, derivatives, &more);
+  LAM_EACH_POINT(g) out->W[g] += more.W[g];
+  for (PetscInt r = 0; r < LAM_KERNEL_COMPONENTS && derivatives; ++r) {
+    LAM_EACH_POINT(g) out->P[r][g] += more.P[r][g];
+    for (PetscInt c = r; c < LAM_KERNEL_COMPONENTS; ++c) LAM_EACH_POINT(g) out->A[r][c][g] += more.A[r][c][g];
+  }
 }
 
 /* px = q = sum w psi U'(theta), stress->H = sum w psi psi U''(theta). */
@@ -172,7 +241,7 @@ LAM_INLINE void FindStress(const LamElementGeometry *geometry, const LamWallLaw 
   LamKernel1 fibre;
   LamKernel k;
 
-  law->matrix(wall, H, F33 - 1.0, PETSC_TRUE, &k);
+  MatrixKernel(geometry, law, wall, H, F33, PETSC_TRUE, &k);
   Fibres(geometry, law, wall, H, F33, &fibre);
   Deformation(H, F);
   StructureTensor(geometry, wall, h);

@@ -1,9 +1,9 @@
 #include "wall_law.h"
 
 static const LamWallLaw laws[] = {
-    {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamFibreQuadratic},
-    {LAM_WALL_FIBRE_EXPONENTIAL, LamMatrixMooneyRivlin, LamFibreExponential},
-    {LAM_WALL_MOONEY_RIVLIN, LamMatrixMooneyRivlin, NULL},
+    {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamMatrixShear, LamFibreQuadratic},
+    {LAM_WALL_FIBRE_EXPONENTIAL, LamMatrixMooneyRivlin, LamMatrixShear, LamFibreExponential},
+    {LAM_WALL_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamMatrixShear, NULL},
 };
 
 PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law)

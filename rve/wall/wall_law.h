@@ -5,7 +5,8 @@
   The matrix part is isochoric. U is the same for every law: U(J) = kappa/4 (J^2 - 1 - 2 ln J), applied to the
   projected dilatation (element.h). E = I4 - 1, I4 = M.CM with the full C and M along the wall (Mihai, Safar & Wyatt,
   eq. 4.1); with a dispersion d of the fibres E = d (I1 - 3) + (1 - 3 d) (I4 - 1), I1 = tr C (Gasser, Ogden & Holzapfel,
-  J. R. Soc. Interface 3 (2006) 15-35: the generalised structure tensor). Kernels take deviations from the undeformed
+  J. R. Soc. Interface 3 (2006) 15-35: the generalised structure tensor). Fibres may leave the section by an angle, and
+  there may be shear out of it (matrix_shear.c). Kernels take deviations from the undeformed
   wall, H = F - 1, E and J - 1, so that energy and stress keep full relative accuracy at small strains. Unit of energies
   and stresses: C1 + C2.
   A new law is one kernel file and one row in wall_law.c.
@@ -32,6 +33,14 @@ typedef struct {
   LamPoints A[LAM_KERNEL_COMPONENTS][LAM_KERNEL_COMPONENTS]; /* d2W/dFdF, [r][c] with r <= c */
 } LamKernel;
 
+/* The same of what shear out of the section adds: components 5 and 6 are g = (F31, F32) in the frame of the section. */
+#define LAM_SHEAR_COMPONENTS 7
+typedef struct {
+  LamPoints W;
+  LamPoints P[LAM_SHEAR_COMPONENTS];
+  LamPoints A[LAM_SHEAR_COMPONENTS][LAM_SHEAR_COMPONENTS];
+} LamShearKernel;
+
 typedef struct {
   LamPoints W, d, dd; /* energy, first and second derivative with respect to the one argument */
 } LamKernel1;
@@ -40,6 +49,9 @@ typedef struct {
   LamWallLawType type;
   /* Isochoric matrix at F = 1 + H, F33 = 1 + H33; requires det F > 0 and F33 > 0. Without `derivatives` W alone. */
   void (*matrix)(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives, LamKernel *out);
+  /* What shear g out of the section adds to it. */
+  void (*shear)(const LamWall *wall, const LamPoints H[4], PetscReal H33, const LamPoints g[2], PetscBool derivatives,
+                LamShearKernel *out);
   /* Fibres as a function of their strain E; NULL if the law has no fibres. */
   void (*fibre)(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
 } LamWallLaw;
@@ -49,6 +61,8 @@ PetscErrorCode LamWallLawGet(LamWallLawType type, const LamWallLaw **law);
 /* Kernels, one file each. */
 void LamMatrixMooneyRivlin(const LamWall *wall, const LamPoints H[4], PetscReal H33, PetscBool derivatives,
                            LamKernel *out);
+void LamMatrixShear(const LamWall *wall, const LamPoints H[4], PetscReal H33, const LamPoints g[2],
+                    PetscBool derivatives, LamShearKernel *out);
 void LamFibreQuadratic(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
 void LamFibreExponential(const LamWall *wall, const LamPoints strain, LamKernel1 *out);
 

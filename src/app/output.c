@@ -220,6 +220,14 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
   putchar('\n');
   if (LamResponseHasFields(response) && F[8] != 1)
     printf("      F33 %.4f, P33 %.3e MPa\n", (double)F[8], (double)(LamWithoutNoise(response->P[8]) * MPa));
+  for (int k = 0; k < 4; k++) {
+    static const int out_of_plane[4] = {2, 5, 6, 7};
+    const int c = out_of_plane[k], i = c / 3 + 1, j = c % 3 + 1;
+
+    if (LamResponseHasFields(response) && F[c] != 0)
+      printf("      F%d%d %.4f, P%d%d %.3e MPa\n", i, j, (double)F[c], i, j,
+             (double)(LamWithoutNoise(response->P[c]) * MPa));
+  }
   if (LamResponseHasFields(response) && !HasTurgorOfLoad(response))
     printf("      pressure in the lumens %.4g MPa, spread %.3g MPa\n", (double)(response->turgor_mean * MPa),
            (double)(response->turgor_spread * MPa));

@@ -39,6 +39,7 @@ static void DescribeWall(const LamWall *wall, FILE *out)
     if (LamWallLawHas(wall->law, k) && !(LamWallParameterIsOptional(k) && LamWallGet(wall, k) == 0))
       fprintf(out, "\"%s\": %.12g, ", LamWallParameterNames[k], Clean(LamWallGet(wall, k)));
   if (LamWallLawHasFibres(wall->law)) fprintf(out, "\"fibres\": \"%s\", ", LamFibresNames[wall->fibres]);
+  if (wall->fibre_angle != 0) fprintf(out, "\"fibre_angle\": %.12g, ", Clean(wall->fibre_angle));
   fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
 }
 
@@ -207,7 +208,8 @@ static PetscBool AreSameWalls(const LamWall *a, const LamWall *b, PetscReal tole
   if (a->law != b->law || !AreEqual(a->bulk_modulus, b->bulk_modulus, tolerance)) return PETSC_FALSE;
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++)
     if (!AreEqual(LamWallGet(a, k), LamWallGet(b, k), tolerance)) return PETSC_FALSE;
-  return (PetscBool)(!LamWallLawHasFibres(a->law) || a->fibres == b->fibres);
+  return (PetscBool)(!LamWallLawHasFibres(a->law) ||
+                     (a->fibres == b->fibres && AreEqual(a->fibre_angle, b->fibre_angle, tolerance)));
 }
 
 PetscBool LamCellsAgree(const LamCell *a, const LamCell *b, PetscReal tolerance)
@@ -232,7 +234,8 @@ static PetscBool ParseWall(json_t *object, LamWall *wall)
   const char *law, *fibres = LamFibresNames[LAM_FIBRES_BOTH];
   int found[2];
 
-  if (json_unpack(object, "{s:s, s?s, s:F}", "law", &law, "fibres", &fibres, "bulk_modulus", &wall->bulk_modulus))
+  if (json_unpack(object, "{s:s, s?s, s?F, s:F}", "law", &law, "fibres", &fibres, "fibre_angle", &wall->fibre_angle,
+                  "bulk_modulus", &wall->bulk_modulus))
     return PETSC_FALSE;
   found[0] = Find(LAM_WALL_LAW_COUNT, LamWallLawNames, law);
   found[1] = Find(LAM_FIBRES_COUNT, LamFibresNames, fibres);

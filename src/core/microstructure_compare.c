@@ -27,6 +27,7 @@ static const struct {
     {"tearing.stiffness", "stiffness of cuts over (C1 + C2)/apothem", 1},
     {"cell", "rve.variation", 1},
     {"patch", "rve.patch", 1},
+    {"wall.fibre_angle", "rve.wall.fibre_angle (deg)", 180 / PETSC_PI},
     {"wall.bulk_modulus", "rve.wall.bulk_modulus over C1 + C2", 1},
 };
 

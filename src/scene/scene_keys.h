@@ -182,8 +182,9 @@ PetscErrorCode LamSceneSetStiffness(const LamNode *given, const LamNode *energy,
 PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, const LamWall *own, LamWall *wall);
 /* Rejects a factor that takes a wall parameter beyond the upper bound of its key in some wall of the scene. */
 PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor);
-/* Rejects an F that is not a deformation gradient in plane strain, if its components are given. */
-PetscErrorCode LamSceneCheckF(const LamNode *node);
+/* Rejects an F that is not a deformation gradient, if its components are given; any: shears out of the plane are allowed.
+ */
+PetscErrorCode LamSceneCheckF(const LamNode *node, PetscBool any);
 /* Reads the control from the tensors of an entry (P_node NULL: F alone), stresses over `scale`. Rejects components
    that have neither or both of F and P, and tissue that can rotate. */
 PetscErrorCode LamSceneReadControl(const LamNode *F_node, const LamNode *P_node, PetscReal scale,

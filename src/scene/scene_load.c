@@ -16,8 +16,9 @@ static const LamKey load_keys[] = {
     {NAME("load[].reference", LamAreaNames), .default_words = "`rest`",
      .help = "Beside `inflate`: whether P, given and told, is per area of the tissue at rest or of the inflated one."},
     {TENSOR("load[].F"), FREE, FROM(-100), TO(100), .example = "[[1, 0.1], [0, 1]]",
-     .help = "Deformation gradient, rows first. 2x2: plane strain; 3x3: with F33 > 0, out-of-plane shears 0. Its "
-             "determinant is positive. `free` where `P` is given instead; F12 and F21 not both."},
+     .help =
+         "Deformation gradient, rows first, of cells that are prisms along X3. 2x2: plane strain. Its determinant is "
+         "positive. `free` where `P` is given instead; F12 and F21 not both."},
     {STRESS_TENSOR("load[].P"), OPEN, .example = "[[0 MPa, x], [x, 0 MPa]]",
      .help = "Mixed control: the components of the first Piola-Kirchhoff stress that are given, `x` where `F` is. 2x2: "
              "P33 is not."},
@@ -31,10 +32,11 @@ static const LamKey load_keys[] = {
     {INTEGER("load[].ramp.steps"), REQUIRED, FROM(1), TO(10000), .example = "10",
      .help = "Equal steps; with `dissipation`, the most of them."},
     {MAP("load[].ramp.dissipation"), .default_words = "none", .example = "{faces: 0.5}",
-     .help =
-         "In the last entry, with law `lamella` and all of `F` given: each state breaks about so much of the lamella, and "
-         "F goes back along the ramp where that is needed, or is one step of `steps` farther where less breaks. At most "
-         "`steps` states, fewer if the end is reached."},
+     .help = "In the last entry, with law `lamella` and all of `F` given: each state breaks about so much of the "
+             "lamella, and "
+             "F goes back along the ramp where that is needed, or is one step of `steps` farther where less breaks. At "
+             "most "
+             "`steps` states, fewer if the end is reached."},
     {REAL("load[].ramp.dissipation.faces"), REQUIRED, FROM(0.001), TO(1000), .example = "0.5",
      .help = "Energies of fracture, in tension, of a whole face."},
     {STRESS("load[].turgor"), INTO(LamLoad, turgor), .default_words = "`rve.turgor.pressure`", .example = "0.05 MPa",
@@ -71,7 +73,7 @@ static PetscErrorCode CheckComponent(const LamNode *F_node, const LamNode *P_nod
 
   PetscFunctionBeginUser;
   LamSceneCheck(!shear33 || (F_given && !P_given), Item(F_given ? P_node : F_node, i),
-                "this version of Lamella does not have out-of-plane shear yet; write 0 for F%s and x for P%s",
+                "out-of-plane shear is given as F; write a number for F%s, such as 0, and x for P%s",
                 component_names[i], component_names[i]);
   LamSceneCheck(!F_given || !P_given, Item(P_node, i), "F%s is given, too; write x here, or free there",
                 component_names[i]);
@@ -139,19 +141,33 @@ static PetscBool IsInPlane(PetscInt i)
   return (PetscBool)(i < 2 || i == 3 || i == 4);
 }
 
-/* Plane strain, or generalised plane strain: out-of-plane shears would need three displacement components. */
-PetscErrorCode LamSceneCheckF(const LamNode *node)
+static PetscReal Determinant(const PetscReal F[9])
+{
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+static PetscBool HasShear33(const PetscReal F[9])
+{
+  return (PetscBool)(F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0);
+}
+
+PetscErrorCode LamSceneCheckF(const LamNode *node, PetscBool any)
 {
   const PetscReal *F = node->value.number;
   const PetscBool *is_free = node->value.is_free;
   PetscBool complete = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  LamSceneCheck(F[2] == 0.0 && F[5] == 0.0 && F[6] == 0.0 && F[7] == 0.0, node,
-                "this version of Lamella does not have out-of-plane shear yet; write 0 for F13, F23, F31 and F32");
+  LamSceneCheck(any || !HasShear33(F), node,
+                "out-of-plane shear is for `lamella rve`; write 0 for F13, F23, F31 and F32");
   LamSceneCheck(F[8] > 0.0 || is_free[8], node, "F33 = %g; it must be positive", (double)F[8]);
   for (PetscInt i = 0; i < 9; i++) complete = (PetscBool)(complete && !(IsInPlane(i) && is_free[i]));
-  LamSceneCheck(!complete || Determinant2D(F) > 0.0, node,
+  for (PetscInt i = 0; i < 9 && HasShear33(F); i++) {
+    LamSceneCheck(!is_free[i], node, "F%s is free beside an out-of-plane shear; give all of F", component_names[i]);
+    LamSceneCheck(Determinant(F) > 0.0, node, "det F = %g; a deformation gradient has a positive determinant",
+                  (double)Determinant(F));
+  }
+  LamSceneCheck(!complete || HasShear33(F) || Determinant2D(F) > 0.0, node,
                 "F11 F22 - F12 F21 = %g; a deformation gradient has a positive determinant", (double)Determinant2D(F));
   PetscFunctionReturn(0);
 }
@@ -249,6 +265,8 @@ static PetscErrorCode BuildDissipation(const LamNode *entry, const Target *targe
                     "needs law: lamella, whose energy of fracture is dissipated; leave it out, or write that law");
   LamSceneCheckName(!LamWallsTear(&scene->micro), node,
                     "does not go with strength.wall_fracture_energy: cells burst in jumps; leave one of them out");
+  LamSceneCheckName(!HasShear33(target->F->value.number), node,
+                    "does not go with out-of-plane shear; leave one of them out");
   LamSceneCheckName(!target->P, node, "stands beside a prescribed stress; give all of F, or leave it out");
   LamSceneCheckName(!entry->next, node, "is for the last entry: where its ramp ends is not known before");
   LamSceneCheckName(scene->load_count > 0, node,
@@ -273,7 +291,7 @@ static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
   }
   PetscCall(ReadTarget(entry, &target));
   PetscCall(LamSceneReadControl(target.F, target.P, scene->scales.stress, &end));
-  PetscCall(LamSceneCheckF(target.F));
+  PetscCall(LamSceneCheckF(target.F, PETSC_TRUE));
   PetscCall(BuildDissipation(entry, &target, scene));
   if (scene->load_count) load = scene->loads[scene->load_count - 1];
   /* from the inflated tissue F = I is known, and no stress is prescribed */
@@ -285,10 +303,11 @@ static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
 
     LamSceneRampControl(&before, &end, k, target.states, &control);
     StepF(start, target.F->value.number, &control, (PetscReal)k / (PetscReal)target.states, load.F, &known);
-    LamSceneCheck(!known || Determinant2D(load.F) > 0.0, target.F,
+    if (HasShear33(load.F)) scene->out_of_plane = PETSC_TRUE;
+    LamSceneCheck(!known || (HasShear33(load.F) ? Determinant(load.F) : Determinant2D(load.F)) > 0.0, target.F,
                   "the straight path turns the tissue inside out at step %d (determinant %g); go there by way of a "
                   "state in between",
-                  (int)k, (double)Determinant2D(load.F));
+                  (int)k, (double)(HasShear33(load.F) ? Determinant(load.F) : Determinant2D(load.F)));
     if (scene->controls) scene->controls[scene->load_count] = control;
     scene->loads[scene->load_count++] = load;
   }

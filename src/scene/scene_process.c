@@ -405,7 +405,7 @@ static PetscErrorCode ReadLeg(const LamNode *entry, const LamScene *scene, LamPr
   LamSceneRequire(F || !P, entry, "F", "missing; write F: [[free, 0], [0, free]] beside P, or leave out both");
   if (F) {
     PetscCall(LamSceneReadControl(F, P, scene->scales.stress, &leg->control));
-    PetscCall(LamSceneCheckF(F));
+    PetscCall(LamSceneCheckF(F, PETSC_FALSE));
   }
   PetscCall(LamSceneFill(entry, &scene->scales, LamProcessLeg, leg));
   PetscFunctionReturn(0);

@@ -67,9 +67,11 @@
                                                              .default_words = own ", in proportion to C1 + C2",        \
                                                              .example = "110 MPa",                                     \
                                                              .help = "Bulk modulus."},                                 \
+      {NAME_OF(prefix ".fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres), .default_words = own,       \
+       .help = "Whether fibres resist compression."},                                                                  \
   {                                                                                                                    \
-    NAME_OF(prefix ".fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres),                                \
-        .default_words = own, .help = "Whether fibres resist compression."                                             \
+    ANGLE(prefix ".fibre_angle"), INTO(LamWall, fibre_angle), FROM(-90), TO(90),                                       \
+        .default_words = own, .example = "20 deg", .help = "Angle between its fibres and the section of the cells."    \
   }
 
 #define CHOSEN "chosen for the wanted accuracy"

@@ -24,6 +24,9 @@ static const LamKey wall_keys[] = {
      .example = "110 MPa", .help = "Bulk modulus, larger than C1 + C2: walls are nearly incompressible."},
     {NAME_OF("rve.wall.fibres", LamFibresNames, LAM_FIBRES_COUNT), INTO(LamWall, fibres), .default_value = "both",
      .help = "Whether fibres also resist compression along the wall (`both`) or stretch alone (`tension`)."},
+    {ANGLE("rve.wall.fibre_angle"), INTO(LamWall, fibre_angle), FROM(-90), TO(90), .default_value = "0 deg",
+     .help = "Angle between the fibres and the section of the cells: 0 along the wall in the section, 90 deg along the "
+             "cells' axis, X3. Between them fibres wind around the cells as a helix, which couples stretch and twist."},
 };
 LAM_KEY_TABLE(LamWallKeys, wall_keys);
 
@@ -59,6 +62,9 @@ PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, con
   *wall = own ? *own : (LamWall){0};
   PetscCall(LamSceneFill(map, scales, LamWall, wall));
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) PetscCall(CheckParameter(map, k, own, wall));
+  LamSceneCheck(wall->fibre_angle == 0.0 || LamWallLawHasFibres(wall->law), LamNodeFind(map, "fibre_angle"),
+                "law %s has no fibres; leave fibre_angle out, or write law: %s", LamWallLawNames[wall->law],
+                LamWallLawNames[LAM_WALL_FIBRE_MOONEY_RIVLIN]);
   if (!bulk) wall->bulk_modulus = bulk_ratio * (wall->C1 + wall->C2);
   LamSceneCheck(wall->bulk_modulus > wall->C1 + wall->C2, bulk ? bulk : map,
                 "cell walls are nearly incompressible; write a bulk modulus of more than C1 + C2 = %g MPa",

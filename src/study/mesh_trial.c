@@ -113,6 +113,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
   PetscCall(LamRVESetStrategy(c->rve, scene->strategy));
   PetscCall(LamRVESetTolerance(c->rve, TOLERANCE));
   PetscCall(LamRVESetWanted(c->rve, LAM_WANT_STRESS));
+  PetscCall(LamRVESetOutOfPlane(c->rve, scene->out_of_plane));
   PetscCall(LamRVESetUp(c->rve));
   PetscCall(LamRVEStateCreate(c->rve, &c->state));
   PetscFunctionReturn(0);

@@ -18,6 +18,7 @@ static PetscErrorCode CreateOne(MPI_Comm comm, const LamScene *scene, PetscInt r
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
   PetscCall(LamRVESetTolerance(*rve, scene->tolerance));
   PetscCall(LamRVESetSealable(*rve, scene->sealed));
+  PetscCall(LamRVESetOutOfPlane(*rve, scene->out_of_plane));
   PetscCall(LamRVESetUp(*rve));
   PetscCall(LamRVEStateCreate(*rve, state));
   PetscFunctionReturn(0);

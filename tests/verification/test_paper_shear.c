@@ -56,7 +56,7 @@ TEST(ProfileHasTheShearOfTheCubic)
 static double ShearTangent(const LamWall *wall, double psi, double s)
 {
   const double F[4] = {1.0, s, 0.0, 1.0}, Fm1 = cos(psi) + s * sin(psi), M2 = sin(psi);
-  const LamWallLaw law = {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, LamFibreQuadratic};
+  const LamWallLaw law = {LAM_WALL_FIBRE_MOONEY_RIVLIN, LamMatrixMooneyRivlin, NULL, LamFibreQuadratic};
   const MatrixPoint matrix = MatrixAt(&law, wall, F, 1.0);
   const KernelPoint fibre = FibreAt(&law, wall, Fm1 * Fm1 + M2 * M2 - 1.0);
 

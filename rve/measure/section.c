@@ -1,0 +1,150 @@
+/*
+  The rest of stress and tangent: components with an index 3 (docs/theory/homogenisation.md, Out of the section).
+
+  Method. In the frame of the section q = (F11, F12, F21, F22, F33, p, g, width, G1, G2), G = (F31, F32), and z are
+  condensed after the positions in the plane. With y_q the change of positions at fixed z,
+    H_qr = L_qr + L_qy y_r  at fixed z;   r_q = L_zq + L_zy y_q;   S = L_zz - L_zy K^-1 L_yz;   H_qr -= r_q S^-1 r_r.
+  Only walls and the lamella have derivatives with respect to z and G. To first order the solution is at z - S^-1 L_z.
+  Components 13 and 23 follow from objectivity, P F^T = F P^T and its rate, as F_13 = F_23 = 0.
+*/
+#include "antiplane.h"
+#include "measure.h"
+
+typedef struct {
+  PetscReal *r, *z, G[2]; /* [class] r_q, S^-1 r_q; derivative with respect to G at fixed z */
+} AxialColumn;
+
+/* A column of the plane: y = -K^-1 R, `solution`. */
+static void FindPlaneColumn(LamRVE rve, PetscInt q, const PetscReal solution[], PetscReal y[], AxialColumn *column)
+{
+  LamPlaneDirection d = {.y = y};
+
+  y[0] = y[1] = 0.0;
+  for (PetscInt i = 0; i < rve->linear->positions; ++i) y[i + 2] = -solution[i];
+  if (q < 4) d.F[q] = 1.0;
+  if (q == 4) d.F33 = 1.0;
+  LamAntiplaneFromPlane(rve, &d, column->r, column->G);
+}
+
+/* That of a component of G; derivative: L_Gq with q in the plane; work [2 ndof]. */
+static PetscErrorCode FindAxialColumn(LamRVE rve, PetscInt l, PetscReal work[], AxialColumn *column)
+{
+  const PetscReal G[2] = {l == 0, l == 1};
+  LamPlaneGradient force = {.y = work};
+  LamPlaneDirection back = {.y = work + rve->ndof};
+
+  PetscFunctionBeginUser;
+  LamAntiplaneApply(rve, column->z, G, column->r, column->G); /* z = 0 */
+  if (!rve->antiplane->couples) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(work, rve->ndof));
+  LamAntiplaneToPlane(rve, column->z, G, &force);
+  for (PetscInt i = 0; i < rve->ndof; ++i) work[i] = -work[i];
+  PetscCall(LamAntiplaneRelax(rve, work, work + rve->ndof));
+  LamAntiplaneFromPlane(rve, &back, column->r, column->G);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveColumns(LamRVE rve, PetscInt count, AxialColumn column[], PetscBool *ok)
+{
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  for (PetscInt k = 0; k < count && *ok; ++k) {
+    column[k].r[0] = 0.0;
+    PetscCall(LamAntiplaneSolve(rve, column[k].r, column[k].z, ok));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, const PetscReal solutions[],
+                                LamAxialDerivatives *out)
+{
+  const PetscInt n = rve->linear->n, classes = rve->antiplane->classes, count = nq + 2, residual = count;
+  AxialColumn column[LAM_MOST_COLUMNS + 3] = {{0}};
+  PetscReal *data, *work;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *out = (LamAxialDerivatives){0};
+  PetscCall(LamAntiplaneAssemble(rve, load, &out->ok));
+  PetscCall(PetscCalloc2(2 * (count + 1) * classes, &data, 2 * rve->ndof, &work));
+  for (PetscInt k = 0; k <= count; ++k) {
+    column[k].r = data + 2 * k * classes;
+    column[k].z = column[k].r + classes;
+  }
+  for (PetscInt q = 0; q < nq && rve->antiplane->couples; ++q)
+    FindPlaneColumn(rve, q, solutions + q * n, work, &column[q]);
+  for (PetscInt l = 0; l < 2; ++l) PetscCall(FindAxialColumn(rve, l, work, &column[nq + l]));
+  PetscCall(PetscArraycpy(column[residual].r, rve->antiplane->f, classes));
+  PetscCall(SolveColumns(rve, count + 1, column, &ok));
+  out->ok = (PetscBool)(out->ok && ok);
+  for (PetscInt k = 0; k < count; ++k) {
+    const PetscInt q = k < nq ? k : k - nq + LAM_AXIAL_G;
+
+    out->Lq[q] =
+        (k < nq ? 0.0 : rve->antiplane->LG[k - nq]) - LamInnerProduct(classes, column[k].r, column[residual].z);
+    for (PetscInt m = 0; m < count; ++m) {
+      const PetscInt r = m < nq ? m : m - nq + LAM_AXIAL_G;
+      const PetscReal fixed = m >= nq ? column[k].G[m - nq] : k >= nq ? column[m].G[k - nq] : 0.0;
+
+      out->H[q][r] = fixed - LamInnerProduct(classes, column[k].r, column[m].z);
+    }
+  }
+  PetscCall(PetscFree2(data, work));
+  PetscFunctionReturn(0);
+}
+
+/* ---- objectivity ---- */
+
+void LamSectionCompleteStress(const PetscReal F[9], PetscReal P[9])
+{
+  for (PetscInt a = 0; a < 2; ++a) {
+    P[3 * a + 2] = 0.0;
+    for (PetscInt b = 0; b < 2; ++b) P[3 * a + 2] += (P[6 + b] * F[3 * a + b] - P[3 * a + b] * F[6 + b]) / F[8];
+  }
+}
+
+/* dP [9] for a change dF without components 13 and 23, from the rows of the tangent for all others. */
+static void Change(const PetscReal F[9], const PetscReal P[9], const PetscReal A[81], const PetscReal dF[9],
+                   PetscReal dP[9])
+{
+  for (PetscInt r = 0; r < 9; ++r) {
+    dP[r] = 0.0;
+    for (PetscInt c = 0; c < 9 && r != 2 && r != 5; ++c)
+      if (c != 2 && c != 5) dP[r] += A[9 * r + c] * dF[c];
+  }
+  for (PetscInt a = 0; a < 2; ++a) {
+    PetscReal sum = -P[3 * a + 2] * dF[8];
+
+    for (PetscInt b = 0; b < 2; ++b)
+      sum += dP[6 + b] * F[3 * a + b] + P[6 + b] * dF[3 * a + b] - dP[3 * a + b] * F[6 + b] - P[3 * a + b] * dF[6 + b];
+    dP[3 * a + 2] = sum / F[8];
+  }
+}
+
+void LamSectionComplete(const PetscReal F[9], PetscReal P[9], PetscReal A[81])
+{
+  PetscReal full[81];
+
+  LamSectionCompleteStress(F, P);
+  for (PetscInt c = 0; c < 9; ++c) {
+    const PetscInt a = c / 3;
+    PetscReal dF[9] = {0.0}, dP[9];
+
+    dF[c] = 1.0;
+    if (c == 2 || c == 5) { /* dF = W F + rest, W skew, W_a3 = 1/F33 */
+      dF[c] = 0.0;
+      for (PetscInt b = 0; b < 2; ++b) {
+        dF[3 * a + b] = -F[6 + b] / F[8];
+        dF[6 + b] = F[3 * a + b] / F[8];
+      }
+    }
+    Change(F, P, A, dF, dP);
+    if (c == 2 || c == 5)
+      for (PetscInt j = 0; j < 3; ++j) { /* W P */
+        dP[3 * a + j] += P[6 + j] / F[8];
+        dP[6 + j] -= P[3 * a + j] / F[8];
+      }
+    for (PetscInt r = 0; r < 9; ++r) full[9 * r + c] = dP[r];
+  }
+  for (PetscInt k = 0; k < 81; ++k) A[k] = full[k];
+}
