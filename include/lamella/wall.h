@@ -2,8 +2,8 @@
   Wall laws and their parameters. The wall struct, scene files and their reference, descriptions and hashes, `check`,
   `map`, kinetics and parametric databases are generated from these lists.
 
-  A new law needs one row in LAM_WALL_LAWS, rows for its own parameters, one kernel file in rve/wall, a row in wall_law.c,
-  and its stiffness at rest in LamWallFibreModulus.
+  A new law needs one row in LAM_WALL_LAWS, rows for its own parameters, one kernel file in rve/wall, a row in
+  wall_law.c, and its stiffness at rest in LamWallFibreModulus.
 */
 #ifndef LAMELLA_WALL_H
 #define LAMELLA_WALL_H
@@ -25,12 +25,12 @@ LAM_C_BEGIN
   fields of cells) or NUMBER. need: ALWAYS; BY_LAW (required by its law); OPTIONAL (default 0).
 */
 #define LAM_WALL_MATRIX_PARAMETERS(M, X)                                                                               \
-  M(X, C1, all, MODULUS, ALWAYS, "$C_1$", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                        \
+  M(X, C1, all, MODULUS, ALWAYS, "$C_1$", "0.1 MPa", "First Mooney-Rivlin modulus", ABOVE(0))                          \
   M(X, C2, all, MODULUS, ALWAYS, "$C_2$", "0.01 MPa", "Second Mooney-Rivlin modulus", FROM(0))
 #define LAM_WALL_OWN_PARAMETERS(M, X)                                                                                  \
-  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C_4$", "1 MPa", "Fibre modulus", FROM(0))                         \
-  M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k_1$", "0.5 MPa", "Modulus of exponential fibres", FROM(0))         \
-  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k_2$", "5", "Exponent of the fibres", FROM(0))                       \
+  M(X, C4, fibre_mooney_rivlin, MODULUS, BY_LAW, "$C_4$", "1 MPa", "Fibre modulus", FROM(0))                           \
+  M(X, k1, fibre_exponential, MODULUS, BY_LAW, "$k_1$", "0.5 MPa", "Modulus of exponential fibres", FROM(0))           \
+  M(X, k2, fibre_exponential, NUMBER, BY_LAW, "$k_2$", "5", "Exponent of the fibres", FROM(0))                         \
   M(X, dispersion, fibre_exponential, NUMBER, OPTIONAL, "dispersion", "0.1",                                           \
     "Dispersion of the fibres about the wall: 0 all along it, 1/3 in all directions", FROM(0), TO(1.0 / 3.0))
 #define LAM_WALL_PARAMETERS(M, X) LAM_WALL_MATRIX_PARAMETERS(M, X) LAM_WALL_OWN_PARAMETERS(M, X)
@@ -59,6 +59,15 @@ typedef struct {
   LAM_WALL_PARAMETERS(LAM_WALL_MEMBER, )
   PetscReal bulk_modulus;
 } LamWall;
+
+/* Stress relaxation of walls, a Prony series: the moduli are the instantaneous ones, and of a stress that a strain has
+   caused, volume changes aside, 1 - sum share (1 - exp(-t/time)) are left after a time t. */
+#define LAM_RELAXATION_TERMS 3
+typedef struct {
+  PetscInt terms;                        /* 0: walls have no memory */
+  PetscReal share[LAM_RELAXATION_TERMS]; /* > 0, less than 1 in all */
+  PetscReal time[LAM_RELAXATION_TERMS];  /* s */
+} LamRelaxation;
 
 /* Access to parameters by index; `parameter` is a LamWallParameter. */
 LAM_EXPORT PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);

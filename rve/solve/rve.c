@@ -66,8 +66,8 @@ static PetscErrorCode SetUpWalls(LamRVE rve)
     rve->stiffest = PetscMax(rve->stiffest, wall->bulk_modulus + LamWallFibreModulus(wall));
   }
   if (rve->micro.interface == LAM_INTERFACE_LAMELLA)
-    rve->stiffest = PetscMax(rve->stiffest, PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) *
-                                                rve->mesh.longest);
+    rve->stiffest = PetscMax(rve->stiffest,
+                             PetscMax(rve->micro.lamella.stiffness, rve->micro.tearing.stiffness) * rve->mesh.longest);
   PetscFunctionReturn(0);
 }
 
@@ -130,6 +130,7 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   } else {
     PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, rve->linear));
   }
+  PetscCall(LamMemoryCreate(rve));
   rve->ndof = 2 * rve->mesh.class_count;
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
@@ -171,6 +172,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamRVEStateDestroy(&(*rve)->bonded_state));
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
   PetscCall(LamLayerDestroy(&(*rve)->layer));
+  PetscCall(LamMemoryDestroy(&(*rve)->memory));
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamSmoothDestroy(&(*rve)->smooth));
   for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
@@ -227,6 +229,9 @@ PetscErrorCode LamCheckLoad(const LamLoad *load, LamResponse *response)
   else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
     PetscCall(LamRefuse(response, LAM_INVALID_F, "cohesion is %g; it must be finite and not negative",
                         (double)load->cohesion));
+  else if (!(load->duration >= 0.0))
+    PetscCall(
+        LamRefuse(response, LAM_INVALID_F, "the duration is %g s; it must not be negative", (double)load->duration));
   else if (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0)
     PetscCall(LamRefuse(response, LAM_INVALID_F, "F has out-of-plane shear, which plane strain does not carry"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
@@ -252,6 +257,21 @@ static PetscErrorCode FillContact(LamRVE rve, const LamLoad *load, LamResponse *
   /* of facing walls in the exact law, the indicators measure it between the walls themselves */
   response->max_penetration = LamIsExact(rve) ? depths.other : PetscMax(depths.facing, depths.other);
   PetscFunctionReturn(0);
+}
+
+/* Energies of walls with memory, from the ledger of the solution. */
+static void MemoryMeasures(const LamRVEState state, LamResponse *response)
+{
+  const LamMemoryLedger *ledger = &state->ledger;
+  const PetscReal relaxed = ledger->elastic + ledger->retarded - ledger->dissipated; /* stored in springs */
+
+  if (!state->points) {
+    response->stored = response->energy;
+    response->dissipated = response->dissipated_walls = 0.0;
+  }
+  response->stored += relaxed - ledger->step;
+  response->dissipated += ledger->dissipated;
+  response->dissipated_walls += ledger->dissipated;
 }
 
 /* Fills the fields of the solution in rve->y, whose consistent tangent is factored. */
@@ -298,7 +318,8 @@ PetscErrorCode LamEndResponse(LamRVE rve, const LamLoad *load, LamRVEState state
   response->stable = (PetscBool)(response->status == LAM_CONVERGED);
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
   LamKeepState(rve, load, response->branch, state);
-  if (rve->contact) LamKeepEnergy(response, state);
+  if (rve->memory) MemoryMeasures(state, response);
+  if (rve->contact || rve->memory) LamKeepEnergy(response, state);
   PetscFunctionReturn(0);
 }
 
@@ -315,6 +336,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   LamTakeJunctions(rve, state);
   LamLayerTake(rve, state);
+  LamMemoryTake(rve, state, load->duration);
   PetscFunctionReturn(0);
 }
 
@@ -354,8 +376,9 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
 {
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
+  const PetscBool has_history = (PetscBool)(rve->layer || rve->memory);
   const PetscBool looks =
-      (PetscBool)((rve->layer || ((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved)) &&
+      (PetscBool)((has_history || ((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved)) &&
                   !rve->looks_back);
   LamRVEState before = NULL;
 
@@ -373,8 +396,8 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
-  if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, NULL, state, response));
-  if (looks && !rve->layer) PetscCall(LamSeeJump(rve, before, state, response));
+  if (looks && has_history) PetscCall(LamHistoryStep(rve, before, NULL, state, response));
+  if (looks && !has_history) PetscCall(LamSeeJump(rve, before, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);

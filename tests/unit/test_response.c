@@ -5,7 +5,7 @@
 #include <lamella/response.h>
 #include <string.h>
 
-static const LamLoad shear = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0.2, 0};
+static const LamLoad shear = {.F = {1, 0.1, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.2};
 
 TEST(a_new_response_knows_nothing_but_its_load)
 {
