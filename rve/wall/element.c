@@ -122,8 +122,7 @@ PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal 
 }
 
 LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                     const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal *energy,
-                                     PetscBool *valid)
+                                     const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
 {
   LamPoints H[4], dilation, sum;
   LamKernel1 volume, fibre;
@@ -136,7 +135,6 @@ LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const L
   Fibres(geometry, law, wall, H, F33, &fibre);
   LAM_EACH_POINT(g) sum[g] = geometry->weight[g] * (matrix.W[g] + volume.W[g] + fibre.W[g]);
   *energy = Total(sum);
-  if (history) *energy += HistoryEnergy(geometry, history, H, F33);
   *valid = (PetscBool)isfinite(*energy);
 }
 
@@ -144,7 +142,8 @@ void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law,
                       const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal *energy,
                       PetscBool *valid)
 {
-  ElementEnergy(geometry, law, wall, history, u, F33, energy, valid);
+  ElementEnergy(geometry, law, wall, u, F33, energy, valid);
+  if (history && *valid) *energy += LamHistoryEnergy(geometry, history, u, F33);
 }
 
 /* K[a][b] += sum_r left[r][a] right[r][b], over padded rows; three rows of K at a time stay in registers. */
@@ -193,8 +192,8 @@ LAM_INLINE void AddProjection(const PetscReal H[3][3], const PetscReal D[2][LAM_
 }
 
 LAM_CLONES static void ElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                       const LamPoints *history, const PetscReal u[][2], PetscReal F33,
-                                       LamElementStress *stress, LamElementResult *out, PetscBool *valid)
+                                       const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
+                                       LamElementResult *out, PetscBool *valid)
 {
   LamPoints H[4], dilation, energy;
   PetscReal T[3][2 * LAM_GAUSS][LAM_PADDED_NODES];           /* A dN for the component pairs 11, 12, 22 */
@@ -209,10 +208,8 @@ LAM_CLONES static void ElementEvaluate(const LamElementGeometry *geometry, const
   LamVolumetric(wall, dilation, PETSC_TRUE, &volume);
   Pressures(geometry, &volume, stress);
   FindStress(geometry, law, wall, H, F33, stress, &at);
-  if (history) AddHistory(geometry, history, H, &at);
   LAM_EACH_POINT(g) energy[g] = at.energy[g] + geometry->weight[g] * volume.W[g];
   out->energy = Total(energy);
-  if (history) out->energy += HistoryEnergy(geometry, history, H, F33);
   *valid = (PetscBool)isfinite(out->energy);
   if (!*valid) return;
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
@@ -260,7 +257,8 @@ void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *la
                         const LamPoints *history, const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
                         LamElementResult *out, PetscBool *valid)
 {
-  ElementEvaluate(geometry, law, wall, history, u, F33, stress, out, valid);
+  ElementEvaluate(geometry, law, wall, u, F33, stress, out, valid);
+  if (history && *valid) LamHistoryEvaluate(geometry, history, u, F33, out);
 }
 
 LAM_CLONES static void ElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall,
@@ -329,9 +327,8 @@ PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, cons
 }
 
 LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                        const LamPoints *history, const PetscReal u[][2], PetscReal F33,
-                                        const LamElementStress *stress, PetscReal *force,
-                                        PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
+                                        const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
+                                        PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
 {
   const PetscReal dE33 = 2.0 * wall->dispersion * F33;
   PetscReal Df[LAM_PRESSURES], HDf[LAM_PRESSURES], h[2][2], nodes[2][LAM_PADDED_NODES] = {{0.0}};
@@ -358,11 +355,6 @@ LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, cons
     first[g] = w * (k.P[4][g] + stress->sx[g] * dE33 + p[g] * det[g]);
     second[g] = w * (k.A[4][4][g] + stress->dds[g] * dE33 * dE33 + 2.0 * wall->dispersion * stress->s[g]);
   }
-  if (history) LAM_EACH_POINT(g)
-    {
-      first[g] += geometry->weight[g] * F33 * history[3][g];
-      second[g] += geometry->weight[g] * history[3][g];
-    }
   *force = Total(first);
   *ff = Total(second) + Df[0] * HDf[0] + Df[1] * HDf[1] + Df[2] * HDf[2];
   for (PetscInt r = 0; r < 4; ++r) LAM_EACH_POINT(g)
@@ -382,5 +374,6 @@ void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *l
                          const LamElementStress *stress, PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS],
                          PetscReal *ff)
 {
-  ElementStretch33(geometry, law, wall, history, u, F33, stress, force, fx, ff);
+  ElementStretch33(geometry, law, wall, u, F33, stress, force, fx, ff);
+  if (history) LamHistoryStretch33(geometry, history, F33, force, ff);
 }

@@ -4,8 +4,8 @@
 
 /* F, I4 - 1 and the stresses of positions u, without independent stresses: A lacks what these multiply. */
 LAM_INLINE void FindWallStress(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                               const LamPoints *history, const PetscReal u[][2], PetscReal F33, LamPoints F[4],
-                               LamPoints extension, LamElementStress *local, PointStress *at)
+                               const PetscReal u[][2], PetscReal F33, LamPoints F[4], LamPoints extension,
+                               LamElementStress *local, PointStress *at)
 {
   LamPoints H[4], dilation;
   LamKernel1 volume;
@@ -15,20 +15,18 @@ LAM_INLINE void FindWallStress(const LamElementGeometry *geometry, const LamWall
   LamVolumetric(wall, dilation, PETSC_FALSE, &volume);
   Pressures(geometry, &volume, local);
   FindStress(geometry, law, wall, H, F33, local, at);
-  if (history) AddHistory(geometry, history, H, at);
   Deformation(H, F);
   Extension(geometry, H, extension);
 }
 
 LAM_CLONES static void ElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                     const LamPoints *history, const PetscReal u[][2], PetscReal F33,
-                                     PetscReal f[LAM_ELEMENT_DOFS])
+                                     const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
 {
   LamPoints F[4], extension;
   LamElementStress local;
   PointStress at;
 
-  FindWallStress(geometry, law, wall, history, u, F33, F, extension, &local, &at);
+  FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
     for (PetscInt i = 0; i < 2; ++i) {
       LamPoints part;
@@ -44,7 +42,8 @@ LAM_CLONES static void ElementForces(const LamElementGeometry *geometry, const L
 void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
                       const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
 {
-  ElementForces(geometry, law, wall, history, u, F33, f);
+  ElementForces(geometry, law, wall, u, F33, f);
+  if (history) LamHistoryForces(geometry, history, u, f);
 }
 
 LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
@@ -55,7 +54,8 @@ LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const L
   LamElementStress local;
   PointStress at;
 
-  FindWallStress(geometry, law, wall, history, u, F33, F, extension, &local, &at);
+  FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
+  if (history) LamHistoryPoints(geometry, history, (const LamPoints *)F, &at);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal scale = 1.0 / (geometry->weight[g] * (F[0][g] * F[3][g] - F[1][g] * F[2][g]) * F33);
     const PetscReal s11 = scale * (at.P[0][g] * F[0][g] + at.P[1][g] * F[1][g]); /* sigma = P F^T / J */
@@ -83,7 +83,8 @@ LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, con
   PointStress at;
   PetscReal h[2][2];
 
-  FindWallStress(geometry, law, wall, history, u, F33, F, extension, &local, &at);
+  FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
+  if (history) LamHistoryPoints(geometry, history, (const LamPoints *)F, &at);
   AlongFibre(geometry, F, Fm);
   StructureTensor(geometry, wall, h);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {

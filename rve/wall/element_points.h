@@ -217,39 +217,17 @@ LAM_INLINE void GreenStrain(const LamPoints H[4], PetscReal H33, LamPoints E[4])
   }
 }
 
-/* sum w history : E */
-LAM_INLINE PetscReal HistoryEnergy(const LamElementGeometry *geometry, const LamPoints *history, const LamPoints H[4],
-                                   PetscReal F33)
-{
-  LamPoints E[4], energy;
-
-  GreenStrain(H, F33 - 1.0, E);
-  LAM_EACH_POINT(g)
-  {
-    energy[g] = geometry->weight[g] * (history[0][g] * E[0][g] + 2.0 * history[1][g] * E[1][g] +
-                                       history[2][g] * E[2][g] + history[3][g] * E[3][g]);
-  }
-  return Total(energy);
-}
-
-/* Its derivatives in the plane, times the weights: P += F history, A += 1 (x) history; F33 is not coupled. */
-LAM_INLINE void AddHistory(const LamElementGeometry *geometry, const LamPoints *history, const LamPoints H[4],
-                           PointStress *out)
-{
-  LamPoints F[4];
-
-  Deformation(H, F);
-  LAM_EACH_POINT(g)
-  {
-    const PetscReal w = geometry->weight[g], S[2][2] = {{history[0][g], history[1][g]}, {history[1][g], history[2][g]}};
-
-    for (PetscInt r = 0; r < 4; ++r) {
-      const PetscInt row = r - r % 2;
-
-      out->P[r][g] += w * (F[row][g] * S[0][r % 2] + F[row + 1][g] * S[1][r % 2]);
-      for (PetscInt c = r; c < row + 2; ++c) out->A[r][c][g] += w * S[r % 2][c % 2];
-    }
-  }
-}
+/* ---- element_history.c: history : E of walls with memory, and its derivatives F history and 1 (x) history ---- */
+PetscReal LamHistoryEnergy(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                           PetscReal F33);
+/* Add to what walls without memory have; F33 is not coupled. Points: times the weights. */
+void LamHistoryEvaluate(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                        PetscReal F33, LamElementResult *out);
+void LamHistoryForces(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                      PetscReal f[LAM_ELEMENT_DOFS]);
+void LamHistoryStretch33(const LamElementGeometry *geometry, const LamPoints *history, PetscReal F33, PetscReal *force,
+                         PetscReal *ff);
+void LamHistoryPoints(const LamElementGeometry *geometry, const LamPoints *history, const LamPoints F[4],
+                      PointStress *out);
 
 #endif

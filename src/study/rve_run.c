@@ -268,6 +268,23 @@ static PetscErrorCode WriteTest(LamRVERun *run)
   PetscFunctionReturn(0);
 }
 
+/* When the states were reached, of walls with memory. */
+static PetscErrorCode WriteTimes(LamRVERun *run)
+{
+  const PetscInt n = run->solved;
+  PetscReal *times, time = 0;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  if (!n || !LamWallsRelax(&run->scene->micro)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &times));
+  for (PetscInt k = 0; k < n; k++) times[k] = time += run->scene->loads[k].duration;
+  ierr = LamRecordWriterReals(run->writer, "/time", 1, &n, times, "s");
+  PetscCall(PetscFree(times));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVERunSolve(LamRVERun *run)
 {
   PetscErrorCode ierr = 0;
@@ -281,6 +298,7 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
   }
   if (!ierr) ierr = SolveStates(run);
   if (!ierr && run->writer) ierr = WriteTest(run);
+  if (!ierr && run->writer) ierr = WriteTimes(run);
   if (run->csv.out) {
     const PetscErrorCode written = LamBesideClose(&run->csv);
 

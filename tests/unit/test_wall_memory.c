@@ -197,7 +197,8 @@ TEST(a_jump_dissipates_nothing_and_a_hold_what_its_springs_lose)
 TEST(coefficients_are_smooth_where_series_end)
 {
   const LamRelaxation unit = {.terms = 1, .share = {0.5}, .time = {1.0}};
-  const LamMemoryStep below = LamMemoryStepOf(&unit, 1e-3 * (1 - 1e-9)), above = LamMemoryStepOf(&unit, 1e-3 * (1 + 1e-9));
+  const LamMemoryStep below = LamMemoryStepOf(&unit, 1e-3 * (1 - 1e-9)),
+                      above = LamMemoryStepOf(&unit, 1e-3 * (1 + 1e-9));
 
   assert_near(above.psi[0], below.psi[0], 1e-9);
   for (int k = 0; k < 3; k++) assert_near(above.loss[0][k], below.loss[0][k], 1e-8 * fabs(below.loss[0][k]) + 1e-11);
@@ -219,10 +220,11 @@ TEST(stress_and_tangent_of_a_step_are_derivatives_of_its_potential)
   for (int a = 0; a < 9; a++)
     for (int i = 0; i < 2; i++) x[a][i] = 0.1 * w.X[a][i] + RandomReal(&seed, -0.005, 0.005);
 #define SET(u, f) LamElementSetConsistentStress(&w.geometry, w.law, &wall, (const double(*)[2])u, f, &stress)
-#define EVALUATE(u, f, out) \
-  LamElementEvaluate(&w.geometry, w.law, &wall, (const LamPoints *)history, (const double(*)[2])u, f, &stress, out, &valid)
+#define EVALUATE(u, f, out)                                                                                            \
+  LamElementEvaluate(&w.geometry, w.law, &wall, (const LamPoints *)history, (const double(*)[2])u, f, &stress, out,    \
+                     &valid)
 #define STRETCH(u, f, out, mixed, second)                                                                              \
-  LamElementStretch33(&w.geometry, w.law, &wall, (const LamPoints *)history, (const double(*)[2])u, f, &stress, out,    \
+  LamElementStretch33(&w.geometry, w.law, &wall, (const LamPoints *)history, (const double(*)[2])u, f, &stress, out,   \
                       mixed, second)
   assert_true(SET(x, 1.05));
   EVALUATE(x, 1.05, &result);

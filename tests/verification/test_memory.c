@@ -145,7 +145,8 @@ TEST(stress_and_tangent_are_derivatives_of_the_step)
         CHECK(LamRVEStateCopy(before, at));
         side[s] = Step(rve, load, 0.7 * TIME, at);
       }
-#define DIFFERENCE(member) (((side[0].member) - (side[3].member) + 8 * ((side[2].member) - (side[1].member))) / (12 * h))
+#define DIFFERENCE(member)                                                                                             \
+  (((side[0].member) - (side[3].member) + 8 * ((side[2].member) - (side[1].member))) / (12 * h))
       assert_near(c < 5 ? r.P[contact_components[c]] : r.energy_turgor, DIFFERENCE(energy), 1e-7);
       for (int i = 0; i < 5; i++) {
         const int p = contact_components[i];
