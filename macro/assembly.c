@@ -18,8 +18,9 @@ static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscIn
 {
   const PetscInt dim = macro->dim, point = element->first + q;
   const PetscReal *dN = LamMacroGradient(macro, element, q);
-  LamLoad load = {
-      {1, 0, 0, 0, 1, 0, 0, 0, 1}, macro->turgor * macro->turgor_share[point], macro->lamella * macro->cohesion[point]};
+  LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                  .turgor = macro->turgor * macro->turgor_share[point],
+                  .cohesion = macro->lamella * macro->cohesion[point]};
 
   load.turgor += LamMacroTurgorChange(macro, element, point);
   for (PetscInt a = 0; a < element->kind->nodes; a++) {

@@ -65,9 +65,9 @@ static void Project(const LamResponse *response, Energy *energy)
 static PetscErrorCode QueryAt(LamMacro macro, PetscMPIInt rank, PetscBool mine, PetscInt point,
                               const PetscReal e[SYMMETRIC], Energy *energy)
 {
-  const LamLoad load = {{1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, 1},
-                        macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
-                        macro->point_count ? macro->cohesion[point] : 0};
+  const LamLoad load = {.F = {1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, 1},
+                        .turgor = macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
+                        .cohesion = macro->point_count ? macro->cohesion[point] : 0};
   LamResponse response;
 
   PetscFunctionBeginUser;

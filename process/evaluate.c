@@ -74,7 +74,7 @@ static PetscBool SameQuestion(LamProcess process, const LamEvaluation *e)
   const LamLoad *a = &process->last.load, *b = &e->load;
 
   return (PetscBool)(process->last_known && process->last_unit == e->unit && a->turgor == b->turgor &&
-                     a->cohesion == b->cohesion && !memcmp(a->F, b->F, sizeof(a->F)));
+                     a->cohesion == b->cohesion && a->duration == b->duration && !memcmp(a->F, b->F, sizeof(a->F)));
 }
 
 PetscErrorCode LamProcessPassTissue(LamProcess process, const LamTissueFactors *factors)
@@ -99,6 +99,8 @@ static PetscErrorCode QueryResponder(LamProcess process, LamResponder responder,
   own.cohesion /= e->unit;
   PetscCall(LamResponderRespond(responder, 1, &own, &point, response));
   process->counts.questions++;
+  if (process->has_history && e->unit != 1) /* in the unit of walls that have changed since */
+    response->stored = response->dissipated = response->dissipated_walls = response->work = NAN;
   LamResponseScale(e->unit, response);
   response->load = e->load;
   PetscFunctionReturn(0);
@@ -124,8 +126,9 @@ PetscErrorCode LamProcessEvaluate(LamProcess process, PetscReal time, const Pets
 
   PetscFunctionBeginUser;
   LamProcessProperties(process, time, x, e, &factors);
-  e->load.turgor = turgor;
-  e->load.cohesion = e->cohesion;
+  e->load = (LamLoad){.turgor = turgor,
+                      .cohesion = e->cohesion,
+                      .duration = process->has_history ? PetscMax(0, time - process->accepted) : 0};
   Multiply(F, process->inflation, e->load.F);
   e->ok = (PetscBool)(e->walls > 0 && isfinite(e->walls) && isfinite(turgor));
   if (!e->ok) {
@@ -159,6 +162,7 @@ PetscErrorCode LamProcessAccept(LamProcess process)
   if (process->has_history)
     PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
   PetscCall(LamResponderAccept(process->responder));
+  process->accepted = tissue->time;
   PetscFunctionReturn(0);
 }
 

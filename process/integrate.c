@@ -180,7 +180,7 @@ static void AddProperties(const Integration *in, const LamEvaluation *e, PetscIn
   const LamWall *wall = &in->process->scene->micro.wall; /* C1 + C2 is the common factor */
   const PetscReal common = e->factor[LAM_CHANGING_WALLS].value;
 
-  if (in->process->has_history) by_walls = 0; /* not known: walls change, and the lamella does not change with them */
+  if (in->process->breaks) by_walls = 0; /* not known: walls change, and the lamella does not change with them */
   AddFactor(in, e, LAM_CHANGING_LAMELLA, row, by_cohesion * in->process->scene->cohesion, K);
   AddFactor(in, e, LAM_CHANGING_WALLS, row, by_walls * e->walls / common, K);
   AddFactor(in, e, LAM_CHANGING_C1, row, by_walls * common * wall->C1, K);
@@ -336,6 +336,8 @@ static PetscErrorCode Create(LamProcess process, Integration *in)
   PetscCall(LamIntegratorStart(base, Residual, Roots, in));
   LamCallSUN(IDASVtolerances(base->ida, process->spec->tolerance, in->tolerance));
   LamCallSUN(IDASetMaxNumSteps(base->ida, MAX_STEPS));
+  /* the history of walls is of second order in the step, whose length follows from the error of this order */
+  if (LamWallsRelax(&process->scene->micro)) LamCallSUN(IDASetMaxOrd(base->ida, 2));
   in->K = SUNDenseMatrix(base->n, base->n, base->context);
   in->solver = SUNLinSol_Dense(base->y, in->K, base->context);
   LamCallSUN(IDASetLinearSolver(base->ida, in->solver, in->K));

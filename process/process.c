@@ -65,8 +65,9 @@ PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)
   PetscCall(PetscNew(process));
   (*process)->scene = scene;
   (*process)->spec = &scene->process;
-  (*process)->has_history = (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA);
-  (*process)->changes_tissue = (PetscBool)((*process)->has_history || !LamProcessWallsStayAlike(scene));
+  (*process)->breaks = (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA);
+  (*process)->has_history = LamHasHistory(&scene->micro);
+  (*process)->changes_tissue = (PetscBool)((*process)->breaks || !LamProcessWallsStayAlike(scene));
   (*process)->cells.membrane = LamMembraneArea(&scene->micro);
   PetscFunctionReturn(0);
 }
@@ -351,7 +352,7 @@ static PetscErrorCode Snap(LamProcess process, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Tissue with a history under stress that has no equilibrium next to it any more, at once or a moment later, has
+/* Tissue with a lamella under stress that has no equilibrium next to it any more, at once or a moment later, has
    reached the limit of what it bears: the event that ends the process. Its tangent does not tell, as it jumps between
    loading and unloading. */
 static PetscErrorCode FindLimit(LamProcess process, PetscBool *ok, PetscBool *ends)
@@ -359,7 +360,7 @@ static PetscErrorCode FindLimit(LamProcess process, PetscBool *ok, PetscBool *en
   PetscBool happened[LAM_EVENT_COUNT] = {PETSC_FALSE};
 
   PetscFunctionBeginUser;
-  if (*ok || process->stopped || !process->has_history) PetscFunctionReturn(0);
+  if (*ok || process->stopped || !process->breaks) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < 9; i++)
     if (process->segment.given[i]) happened[LAM_EVENT_LIMIT] = PETSC_TRUE;
   *ok = happened[LAM_EVENT_LIMIT];
@@ -430,6 +431,7 @@ static PetscErrorCode Start(LamProcess process, PetscBool *ok)
   PetscCall(EvaluateTissue(process, &e));
   *ok = e.ok;
   if (!*ok) PetscFunctionReturn(0);
+  if (process->has_history) PetscCall(LamProcessAccept(process)); /* what follows counts from now on */
   process->opening = e.response.opening_fraction;
   LamProcessStartProgram(process, e.response.P);
   process->pressure = PetscMax(1e-3, process->tissue.turgor);
@@ -466,7 +468,7 @@ static const char *WhyItEnds(LamProcess process, PetscBool limit)
   const PetscBool contact = LamCellsPart(process->scene->micro.interface);
 
   if (!limit) return process->trouble;
-  if (process->has_history)
+  if (process->breaks)
     return "limit point: the tissue does not bear its stress any more, no equilibrium is found next to the last one";
   return contact && LamResponderGetCounters(process->responder).interpolated
              ? "limit point: nothing is left of the stiffness against what is free, as a database sees it; next to a "

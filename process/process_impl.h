@@ -53,7 +53,7 @@ typedef struct {
   PetscReal time, temperature, outside;
   LamProcessFactor factor[LAM_CHANGING_COUNT];
   PetscReal walls, cohesion; /* walls: C1 + C2 over that at the start */
-  PetscReal unit;            /* of the responder's stresses, C1 + C2 at the start: `walls`, or 1 with a history */
+  PetscReal unit;            /* of the responder's stresses, C1 + C2 at the start: `walls`, or 1 with law lamella */
   LamLoad load;              /* total F, turgor, cohesion */
   LamResponse response;      /* in units of C1 + C2 at the start */
   PetscBool ok;              /* the response has fields */
@@ -85,7 +85,9 @@ struct LamProcess_s {
   PetscBool (*stop)(void);
 
   PetscBool changes_tissue; /* responses are of tissue that changes by more than a common factor of its walls */
-  PetscBool has_history;    /* law `lamella`: responses are of the states accepted before, in C1 + C2 of the start */
+  PetscBool breaks;         /* law `lamella`: responses are in C1 + C2 of the start */
+  PetscBool has_history;    /* this or walls with memory: responses are of the states accepted before, ... */
+  PetscReal accepted;       /* ... at this time; before the start for ever */
   PetscReal inflation[9];   /* F of the stress-free tissue under its turgor at the start */
   LamCells cells;
   PetscReal temperature, opening; /* at the start */

@@ -221,6 +221,7 @@ PetscErrorCode LamProcessBegin(LamProcess process)
   for (PetscInt k = 0; k < LAM_WALL_PARAMETER_COUNT; k++) process->passed.walls[k] = 1;
   process->next_output = 0;
   process->snaps = 0;
+  process->accepted = -PETSC_INFINITY;
   process->counts = (LamProcessCounts){0};
   LamProcessStartProgram(process, (const PetscReal[9]){0});
   LamProcessNextSegment(process, &process->segment);

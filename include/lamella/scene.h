@@ -76,6 +76,7 @@ typedef struct {
   LamTissue tissue;         /* cells that are polygons; NULL: hexagons. Owned as `cell` is */
   PetscInt notch_row, notch_columns; /* of a patch with a lamella: none holds below the first cells of this row */
   LamWall wall;
+  LamRelaxation relaxation; /* of all walls */
   LamCell *cell; /* [cells[0] cells[1]], cell = i cells[1] + j; NULL: all cells are equal. Owned by the original; copies
                     of the struct borrow it */
   LamInterfaceLawType interface;
@@ -90,6 +91,16 @@ typedef struct {
                         planner */
 } LamMicrostructure;
 
+/* Whether walls have a memory. */
+static inline PetscBool LamWallsRelax(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->relaxation.terms > 0);
+}
+/* Whether responses depend on the states before: a lamella that breaks, or walls with memory. */
+static inline PetscBool LamHasHistory(const LamMicrostructure *micro)
+{
+  return (PetscBool)(micro->interface == LAM_INTERFACE_LAMELLA || LamWallsRelax(micro));
+}
 /* Whether walls can tear. */
 static inline PetscBool LamWallsTear(const LamMicrostructure *micro)
 {
@@ -175,6 +186,7 @@ typedef struct {
   PetscReal F[9];     /* deformation gradient, row-major */
   PetscReal turgor;   /* lumen pressure p */
   PetscReal cohesion; /* suction g on separated outer walls; 0 for bonded tissue */
+  PetscReal duration; /* s, of the way from the state before; counts for walls with memory alone. 0: at once */
 } LamLoad;
 
 /* Strengths, in C1 + C2; NaN: not given. */

@@ -61,6 +61,15 @@ typedef struct {
   PetscReal fibre_angle; /* rad: between the fibres and the section of the cells; 0: along the wall, pi/2: along X3 */
 } LamWall;
 
+/* Stress relaxation of walls, a Prony series: the moduli are the instantaneous ones, and of a stress that a strain has
+   caused, volume changes aside, 1 - sum share (1 - exp(-t/time)) are left after a time t. */
+#define LAM_RELAXATION_TERMS 3
+typedef struct {
+  PetscInt terms;                        /* 0: walls have no memory */
+  PetscReal share[LAM_RELAXATION_TERMS]; /* > 0, less than 1 in all */
+  PetscReal time[LAM_RELAXATION_TERMS];  /* s */
+} LamRelaxation;
+
 /* Access to parameters by index; `parameter` is a LamWallParameter. */
 LAM_EXPORT PetscReal *LamWallAt(LamWall *wall, PetscInt parameter);
 LAM_EXPORT PetscReal LamWallGet(const LamWall *wall, PetscInt parameter);

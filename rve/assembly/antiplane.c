@@ -241,8 +241,8 @@ PetscErrorCode LamAntiplaneAssemble(LamRVE rve, const LamLoad *load, PetscBool *
     t->piece[k].d = (LamElementAxial){0};
     if (k >= rve->mesh.element_count) continue;
     LamGatherDisplacements(rve, load->F, rve->y, k, u);
-    LamElementShear(&rve->geometry[k], LamLawOf(rve, k), LamWallOf(rve, k), (const PetscReal(*)[2])u, load->F[8],
-                    &rve->stress[k], &t->piece[k].d);
+    LamElementShear(&rve->geometry[k], LamLawOf(rve, k), LamWallOf(rve, k), LamHistoryOf(rve, k),
+                    (const PetscReal(*)[2])u, load->F[8], &rve->stress[k], &t->piece[k].d);
   }
   if (rve->layer) LamLayerVisitPoints(rve, load->F, rve->y, AddBond, rve);
   Scatter3(t);

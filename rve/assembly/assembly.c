@@ -70,8 +70,8 @@ PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscRea
 
     if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
-    LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                     &element, valid);
+    LamElementEnergy(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                     (const PetscReal(*)[2])u, load->F[8], &element, valid);
     if (!*valid) break;
     *energy += element;
   }
@@ -112,8 +112,8 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
 
     if (!LamMoves(rve, rve->mesh.cell_of[e])) continue;
     LamGatherDisplacements(rve, load->F, y, e, u);
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                       &rve->stress[e], &element, valid);
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                       (const PetscReal(*)[2])u, load->F[8], &rve->stress[e], &element, valid);
     if (!*valid) break;
     *energy += element.energy;
     if (has_turgor && LamMeshElementIsInner(&rve->mesh, e)) {

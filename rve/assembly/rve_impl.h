@@ -6,6 +6,7 @@
     smooth_contact.c    contact of all walls by a smooth potential; couplings of walls that meet
     antiplane.c    the third component of positions
     lamella.c      the lamella between facing walls, which breaks
+    memory.c       walls with memory
     part.c         sums and linear systems of a part of the cells
     contact.c      the exact law between facing walls: pairs, junctions, active set
     interrupt.c    factorisations that check the interrupt; refusals
@@ -24,6 +25,7 @@
 #include "contact.h"
 #include "lamella.h"
 #include "linear.h"
+#include "memory.h"
 #include "smooth_contact.h"
 
 #define LAM_LARGE 2000      /* elements, from which a coarser mesh is solved first and only one factor is kept */
@@ -44,15 +46,23 @@ struct LamRVEState_s {
   PetscReal width;     /* of the smooth law that it solves, apothems; 0: the exact law */
   /* law `lamella` only */
   PetscInt points;
-  LamBondHistory *history;            /* [points] */
-  PetscReal spent, released, work;    /* energies per V0 so far: dissipated, lost in jumps, work of the loads */
-  PetscReal juice;                    /* volume per V0 of the lumens of burst cells, when they burst */
-  PetscInt cells;                     /* of tissue whose walls tear, else 0 */
-  PetscBool *burst;                   /* [cells] */
-  PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c); NaN: unknown */
-  PetscInt axial;                     /* length of z: [class], of an RVE without a third component 0 */
-  PetscReal *z;
-  LamLoad given; /* `load` as it was given, before it was turned (out_of_plane.c) */
+  LamBondHistory *history;   /* [points] */
+  PetscReal spent, released; /* energies per V0 so far: dissipated, lost in jumps */
+  PetscReal juice;           /* volume per V0 of the lumens of burst cells, when they burst */
+  PetscInt cells;            /* of tissue whose walls tear, else 0 */
+  PetscBool *burst;          /* [cells] */
+  /* walls with memory only */
+  PetscInt pairs;
+  LamMemoryPair *past; /* [element][1 + terms] */
+  LamMemoryLedger ledger;
+  /* with contact or a history */
+  PetscReal work;                     /* of the loads, per V0 so far; with a history only */
+  PetscReal energy[LAM_ENERGY_COUNT]; /* Psi and its derivatives (contact_jump.c), with memory what is stored or
+                                         dissipated instead of Psi; NaN: unknown */
+  /* with a third component of positions only */
+  PetscInt axial; /* [class], else 0 */
+  PetscReal *z;   /* [axial] */
+  LamLoad given;  /* `load` as it was given, before it was turned (out_of_plane.c) */
 };
 
 typedef struct {
@@ -107,6 +117,7 @@ struct LamRVE_s {
   LamContact *contact;    /* the exact law; NULL for bonded tissue; owned */
   LamLayer *layer;        /* the lamella of law `lamella`, else NULL; owned */
   LamAntiplane antiplane; /* the third component of positions; NULL: they are plane; owned */
+  LamMemory *memory;      /* NULL: walls have none; owned */
   LamBondRates *rates; /* solves are for the model of a material point, and set these; NULL: they are not; borrowed */
   LamRVE bonded;       /* two_step: the same tissue with bonded walls, created at its first use; owned */
   LamRVEState bonded_state; /* of `bonded`; owned */
@@ -132,14 +143,20 @@ static inline const LamWall *LamCellWall(const LamMicrostructure *micro, PetscIn
 {
   return micro->cell ? &micro->cell[cell].wall : &micro->wall;
 }
-/* Law and wall of the cell that an element belongs to. */
+/* Law and wall of the cell that an element belongs to, and the history of its walls; in a step. */
 static inline const LamWallLaw *LamLawOf(LamRVE rve, PetscInt element)
 {
   return rve->law[rve->mesh.cell_of[element]];
 }
 static inline const LamWall *LamWallOf(LamRVE rve, PetscInt element)
 {
-  return LamCellWall(&rve->micro, rve->mesh.cell_of[element]);
+  const PetscInt cell = rve->mesh.cell_of[element];
+
+  return rve->memory ? &rve->memory->wall[cell] : LamCellWall(&rve->micro, cell);
+}
+static inline const LamPoints *LamHistoryOf(LamRVE rve, PetscInt element)
+{
+  return rve->memory ? (const LamPoints *)rve->memory->history[element] : NULL;
 }
 static inline PetscBool LamHasBurst(LamRVE rve, PetscInt cell)
 {
@@ -284,6 +301,14 @@ void LamLayerTake(LamRVE rve, const LamRVEState state);
 PetscErrorCode LamLayerBurst(LamRVE rve, const LamLoad *load, PetscBool *any);
 /* Stores the history at the end of the step, at rve->y. */
 void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state);
+
+/* ---- memory.c ---- */
+/* Nothing without memory. Take: before the solves of a step; Keep: stores the past and the ledger at rve->y. */
+PetscErrorCode LamMemoryCreate(LamRVE rve);
+PetscErrorCode LamMemoryDestroy(LamMemory **memory);
+PetscInt LamMemoryPairs(LamRVE rve);
+void LamMemoryTake(LamRVE rve, const LamRVEState state, PetscReal duration);
+void LamMemoryKeep(LamRVE rve, const LamLoad *load, LamRVEState state);
 
 /* ---- smooth_pressures.c ---- */
 /* Forces of the smooth law at rve->y, per reference thickness. */

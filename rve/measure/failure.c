@@ -46,8 +46,8 @@ static void WallPoints(LamRVE rve, const LamLoad *load, const PetscReal y[], Pet
   PetscReal u[LAM_ELEMENT_NODES][2];
 
   LamGatherDisplacements(rve, load->F, y, e, u);
-  LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                       points);
+  LamElementWallPoints(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                       (const PetscReal(*)[2])u, load->F[8], points);
 }
 
 /* Integrals through the wall at the three Gauss points along the face of element column i; adds the kinked volume. */
@@ -55,6 +55,7 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt face, Petsc
                            PetscReal *kinked)
 {
   const PetscReal turgor = LamTurgor(rve, load, rve->y, rve->mesh.tissue->cell[face]);
+  const PetscReal scale = rve->memory ? rve->memory->step.scale : 1.0; /* energies are those of the moduli given */
 
   for (PetscInt h = 0; h < 3; ++h)
     for (PetscInt q = 0; q < INTEGRALS; ++q) column[h][q] = 0.0;
@@ -69,7 +70,7 @@ static void SumThroughWall(LamRVE rve, const LamLoad *load, PetscInt face, Petsc
       sum[REFERENCE] += points[g].reference;
       sum[VOLUME] += points[g].volume;
       sum[STRETCH] += points[g].stretch;
-      sum[ENERGY] += points[g].energy;
+      sum[ENERGY] += points[g].energy / scale;
       sum[TENSION] += points[g].tension + turgor * points[g].volume;
       sum[SOFTNESS] -= points[g].ellipticity;
       *kinked += points[g].kinked;

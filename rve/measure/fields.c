@@ -38,6 +38,7 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
   PetscInt *count;
 
   PetscFunctionBeginUser;
+  LamMemoryTake(rve, state, 0.0);
   PetscCall(PetscCalloc1(mesh->node_count, &count));
   if (fibre) PetscCall(PetscArrayzero(fibre, mesh->node_count));
   if (stress) PetscCall(PetscArrayzero(stress, mesh->node_count));
@@ -46,8 +47,8 @@ PetscErrorCode LamRVEGetFields(LamRVE rve, LamRVEState state, PetscReal x[], Pet
 
     LamGatherElement(rve, state->load.F, state->y, e, xe);
     LamGatherDisplacements(rve, state->load.F, state->y, e, u);
-    LamElementFields(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, state->load.F[8],
-                     gauss[0], gauss[1]);
+    LamElementFields(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                     (const PetscReal(*)[2])u, state->load.F[8], gauss[0], gauss[1]);
     for (PetscInt k = 0; k < 2; ++k) ExtrapolateToNodes(gauss[k], node[k]);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a) {
       const PetscInt i = mesh->elements[LAM_ELEMENT_NODES * e + a];
@@ -93,6 +94,7 @@ PetscErrorCode LamRVEGetSoftestMode(LamRVE rve, LamRVEState state, PetscReal *ei
   LamForgetTangent(rve);
   if (rve->contact) PetscCall(LamSmoothReset(rve));
   PetscCall(LamTakeState(rve, state));
+  LamMemoryTake(rve, state, 0.0);
   PetscCall(PetscCalloc1(rve->linear->n, &unknowns));
   PetscCall(LamFactorConsistent(rve, &state->load, &negative, &ok));
   if (ok) PetscCall(LamSoftestMode(rve, eigenvalue, unknowns));

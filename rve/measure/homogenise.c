@@ -75,8 +75,8 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
   PetscReal u[LAM_ELEMENT_NODES][2], force33, ff, fx[LAM_ELEMENT_DOFS];
 
   LamGatherDisplacements(rve, load->F, rve->y, e, u);
-  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                      &rve->stress[e], &force33, fx, &ff);
+  LamElementStretch33(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                      (const PetscReal(*)[2])u, load->F[8], &rve->stress[e], &force33, fx, &ff);
   c->Lq[Q_F33] += force33;
   c->Lqq[Q_F33][Q_F33] += ff;
   for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
@@ -85,8 +85,8 @@ static void AddElement(LamRVE rve, const LamLoad *load, PetscInt e, Condensation
     LamElementResult element;
     PetscBool valid;
 
-    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8],
-                       &rve->stress[e], &element, &valid);
+    LamElementEvaluate(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                       (const PetscReal(*)[2])u, load->F[8], &rve->stress[e], &element, &valid);
     AddShifted(rve, e, &element, fx, c);
   }
 }

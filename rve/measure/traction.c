@@ -28,7 +28,8 @@ static void NodeForces(LamRVE rve, const LamLoad *load, PetscReal force[])
 
     if (!LamMeshElementIsOuter(mesh, e)) continue; /* only the outermost elements touch a face */
     LamGatherDisplacements(rve, load->F, rve->y, e, u);
-    LamElementForces(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), (const PetscReal(*)[2])u, load->F[8], f);
+    LamElementForces(&rve->geometry[e], LamLawOf(rve, e), LamWallOf(rve, e), LamHistoryOf(rve, e),
+                     (const PetscReal(*)[2])u, load->F[8], f);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) force[2 * mesh->elements[LAM_ELEMENT_NODES * e + a] + d] += f[2 * a + d];
   }

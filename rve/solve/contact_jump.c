@@ -16,7 +16,7 @@
 
 void LamKeepEnergy(const LamResponse *response, LamRVEState state)
 {
-  state->energy[0] = response->energy;
+  state->energy[0] = state->pairs ? response->stored + response->dissipated : response->energy;
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) state->energy[1 + q] = response->P[LamFComponent[q]];
   state->energy[6] = response->energy_turgor;
   state->energy[7] = response->energy_cohesion;

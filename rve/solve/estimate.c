@@ -5,7 +5,8 @@
   the interpolated solution, so that both are on the same branch. The difference of the two stresses times EXCESS is the
   error of the coarser mesh, plus the effect of the residual tolerance. A coarser mesh would be cheaper and tells
   little: what it misses is no measure of what this one misses (docs/results/performance.md, "The error of a mesh").
-  With a lamella, whose states depend on those before, the finer mesh follows the same loads with a history of its own.
+  With a lamella or walls with memory, whose states depend on those before, the finer mesh follows the same loads with a
+  history of its own.
 */
 #include "clock.h"
 #include "measure.h"
@@ -78,7 +79,7 @@ PetscErrorCode LamRVEEstimateError(LamRVEEstimate e, LamRVEState state, LamRespo
   PetscFunctionBeginUser;
   response->error_estimate = NAN;
   if (!e->finer || !LamResponseHasFields(response)) PetscFunctionReturn(0);
-  if (e->rve->layer)
+  if (e->rve->layer || e->rve->memory)
     PetscCall(LamRVESolve(e->finer, &response->load, e->state, &finer));
   else
     PetscCall(LamRVESolveFiner(e->rve, state, e->finer, e->state, &finer));

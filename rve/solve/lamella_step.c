@@ -62,12 +62,13 @@ typedef struct {
   LamStressControl control;      /* its P */
 } Target;
 
-/* Half of the way there. */
+/* Half of the way there, in half of the time. */
 static Target Middle(const LamRVEState at, const Target *end)
 {
   Target middle = *end;
 
   middle.load = LamLoadBetween(&at->load, &end->load, 0.5);
+  middle.load.duration = 0.5 * end->load.duration;
   for (PetscInt q = 0; q < LAM_F_COUNT && end->given; ++q) {
     const PetscInt c = LamFComponent[q];
 
@@ -106,6 +107,7 @@ static PetscErrorCode SolveTarget(LamRVE rve, LamRVEState at, const Target *targ
 static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, PetscInt halvings, Retracing *r)
 {
   const Target middle = Middle(at, target);
+  Target rest = *target;
   PetscBool too_long;
   LamRVEState end;
 
@@ -128,7 +130,8 @@ static PetscErrorCode Retrace(LamRVE rve, LamRVEState at, const Target *target, 
   }
   if (too_long && halvings > 0 && !rve->work.stopped) {
     PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
-    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, target, halvings - 1, r));
+    rest.load.duration = middle.load.duration;
+    if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &rest, halvings - 1, r));
   }
   PetscCall(LamRVEStateDestroy(&end));
   PetscFunctionReturn(0);
@@ -140,13 +143,15 @@ static PetscErrorCode TakeAgain(LamRVE rve, LamRVEState before, const Target *en
   const PetscInt halvings = rve->rates ? MODEL_HALVINGS : HALVINGS;
   const Target middle = Middle(before, end);
   const LamResponse found = r->response;
+  Target rest = *end;
   LamRVEState at;
 
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCreate(rve, &at));
   PetscCall(LamRVEStateCopy(before, at));
   PetscCall(Retrace(rve, at, &middle, halvings - 1, r));
-  if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, end, halvings - 1, r));
+  rest.load.duration = middle.load.duration;
+  if (r->response.status == LAM_CONVERGED) PetscCall(Retrace(rve, at, &rest, halvings - 1, r));
   if (r->response.status == LAM_CONVERGED) {
     PetscCall(LamRVEStateCopy(at, state));
   } else {
@@ -185,5 +190,18 @@ PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressContr
   }
   response->released = state->released;
   response->work = state->work;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamHistoryStep(LamRVE rve, LamRVEState before, const LamStressControl *control, LamRVEState state,
+                              LamResponse *response)
+{
+  PetscFunctionBeginUser;
+  if (rve->layer) {
+    PetscCall(LamLayerStep(rve, before, control, state, response));
+  } else if (LamResponseHasFields(response)) {
+    state->work = before->work + LamStepWorkOf(before, state).work;
+    response->work = state->work;
+  }
   PetscFunctionReturn(0);
 }

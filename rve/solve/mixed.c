@@ -115,7 +115,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCreate(rve, &fast));
   PetscCall(LamRVEStateCopy(state, fast));
-  if (rve->layer && !rve->looks_back) {
+  if ((rve->layer || rve->memory) && !rve->looks_back) {
     PetscCall(LamRVEStateCreate(rve, &before));
     PetscCall(LamRVEStateCopy(state, before));
   }
@@ -134,7 +134,7 @@ static PetscErrorCode SolveTiers(LamRVE rve, const LamLoad *load, const LamStres
     response->factorisations = factorisations + safe.factorisations;
   }
   if (LamResponseHasFields(response)) PetscCall(LamRVEStateCopy(fast, state));
-  if (before) PetscCall(LamLayerStep(rve, before, control, state, response));
+  if (before) PetscCall(LamHistoryStep(rve, before, control, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   PetscCall(LamRVEStateDestroy(&fast));
   PetscFunctionReturn(0);

@@ -12,7 +12,8 @@
 
   Out of the plane there is (ii) alone.
 
-  The iterates of a descent leave no damage in a lamella: all have the history of the state that it started from.
+  The iterates of a descent leave no damage in a lamella: all have the history of the state that it started from. Walls
+  with memory have that of the state before in all of the search, whose loads are those of one step.
 
   Reference. Nocedal & Wright, Numerical Optimization, 3.4.
 */
@@ -41,6 +42,7 @@ typedef struct {
 
 typedef struct {
   LamRVE rve;
+  LamRVEState before;  /* of the step; borrowed */
   LamRVEState history; /* of a descent: that of the state it starts from; NULL: each state has its own */
   const LamStressControl *control;
   const LamLoad *load;
@@ -82,6 +84,7 @@ static PetscErrorCode SolveAt(Search *s, const LamLoad *load, LamRVEState from)
   if (s->stopped) PetscFunctionReturn(0);
   PetscCall(LamRVEStateCopy(from, s->next.state));
   if (s->history) PetscCall(LamCopyHistory(s->history, s->next.state));
+  PetscCall(LamCopyMemory(s->before, s->next.state));
   PetscCall(LamRVESolve(s->rve, load, s->next.state, &s->next.response));
   Count(s, &s->next.response);
   if (LamResponseHasFields(&s->next.response)) PetscCall(LamMixedLook(s->control, &s->next.response, &s->next.view));
@@ -96,6 +99,7 @@ static PetscErrorCode TryFast(Search *s, const LamLoad *guess, const LamStressCo
   PetscFunctionBeginUser;
   PetscCall(LamRVEStateCopy(s->now.state, s->next.state));
   if (s->history) PetscCall(LamCopyHistory(s->history, s->next.state));
+  PetscCall(LamCopyMemory(s->before, s->next.state));
   PetscCall(LamMixedFast(s->rve, &load, control, s->next.state, &s->next.response));
   Count(s, &s->next.response);
   PetscCall(PetscStrncpy(s->refusal, s->next.response.reason, sizeof(s->refusal)));
@@ -266,10 +270,10 @@ static PetscErrorCode DescendFrom(Search *s, const LamLoad *load, LamRVEState fr
    tries descent from the guess of F. */
 static PetscErrorCode Find(Search *s, LamRVEState state, PetscBool *found)
 {
-  const LamLoad start = state->load;
-  LamLoad load = *s->load;
+  LamLoad start = state->load, load = *s->load;
 
   PetscFunctionBeginUser;
+  start.duration = load.duration;
   if (s->descends) {
     PetscCall(DescendFrom(s, &load, state, found));
     PetscFunctionReturn(0);
@@ -333,8 +337,11 @@ static PetscErrorCode GiveReason(const Search *s, LamResponse *response)
 PetscErrorCode LamMixedSafe(LamRVE rve, const LamLoad *load, const LamStressControl *control, LamRVEState state,
                             LamResponse *response)
 {
-  Search s = {
-      .rve = rve, .control = control, .load = load, .descends = LamMixedIsOutOfPlane(rve, load, control, state)};
+  Search s = {.rve = rve,
+              .before = state,
+              .control = control,
+              .load = load,
+              .descends = LamMixedIsOutOfPlane(rve, load, control, state)};
   PetscBool found;
 
   PetscFunctionBeginUser;

@@ -4,8 +4,9 @@
   Each point has two states: the accepted one of the last load step, and the latest solution, which is nearer to the
   next query. A query starts from the latest one, unless that has left the accepted branch (by buckling): an iterate of
   the macroscale Newton must not select the branch; nor may it leave damage: with a lamella every query starts from the
-  accepted state. A query without a point, or of one without stored states, starts
-  from the reference state. After sealing, each point keeps the water of its accepted state.
+  accepted state, as with walls that have a memory, whose step counts from there. A query without a point, or of one
+  without stored states, starts from the reference state. After sealing, each point keeps the water of its accepted
+  state.
 
   Jumps of a lamella. A body may be in equilibrium neither before one of its points jumps nor after, because the jump
   unloads the point and the body then takes it back across: iterates then go to and fro. So a point that has jumped in a
@@ -41,7 +42,7 @@ static PetscBool SameLoad(const LamLoad *a, const LamLoad *b)
   for (int k = 0; k < 9; ++k) {
     if (a->F[k] != b->F[k]) return PETSC_FALSE;
   }
-  return (PetscBool)(a->turgor == b->turgor && a->cohesion == b->cohesion);
+  return (PetscBool)(a->turgor == b->turgor && a->cohesion == b->cohesion && a->duration == b->duration);
 }
 
 /* Solves with the RVE, which is borrowed and therefore sealed only during the solve. */
@@ -101,6 +102,7 @@ static PetscBool StartsAccepted(const DirectResponder *direct, PetscInt point, c
 {
   const LamRVEState latest = direct->latest[point];
 
+  if (direct->rve->memory) return PETSC_TRUE;
   if (direct->rve->layer) return (PetscBool)(!direct->jumped[point] || !IsNearby(load, &latest->load));
   return (PetscBool)(latest->branch != direct->accepted[point]->branch);
 }

@@ -114,6 +114,7 @@ PetscErrorCode LamRVEChangeTissue(LamRVE rve, const LamMicrostructure *micro)
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
   PetscInt cells, lumens;
+  PetscBool tilted = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
@@ -131,12 +132,15 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   } else {
     PetscCall(LamLinearCreate(&rve->mesh, NULL, lumens, rve->linear));
   }
+  PetscCall(LamMemoryCreate(rve));
   rve->ndof = 2 * rve->mesh.class_count;
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
                          &rve->residual));
   for (PetscInt c = 0; c < cells; ++c)
-    if (LamCellWall(&rve->micro, c)->fibre_angle != 0.0) rve->out_of_plane = PETSC_TRUE;
+    if (LamCellWall(&rve->micro, c)->fibre_angle != 0.0) rve->out_of_plane = tilted = PETSC_TRUE;
+  PetscCheck(!tilted || !LamWallsRelax(&rve->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "walls with memory have no fibres that leave the section: leave `relaxation` or `fibre_angle` out");
   if (rve->out_of_plane) PetscCall(LamAntiplaneCreate(rve, &rve->antiplane));
   PetscCall(PetscMalloc3(lumens, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));
   PetscFunctionReturn(0);
@@ -185,6 +189,7 @@ PetscErrorCode LamRVEDestroy(LamRVE *rve)
   PetscCall(LamRVEDestroy(&(*rve)->bonded));
   PetscCall(LamAntiplaneDestroy(&(*rve)->antiplane));
   PetscCall(LamLayerDestroy(&(*rve)->layer));
+  PetscCall(LamMemoryDestroy(&(*rve)->memory));
   PetscCall(LamContactDestroy(&(*rve)->contact));
   PetscCall(LamSmoothDestroy(&(*rve)->smooth));
   for (PetscInt k = 0; k < LAM_SYSTEMS; ++k) PetscCall(LamLinearDestroy(&(*rve)->systems[k]));
@@ -241,9 +246,14 @@ PetscErrorCode LamCheckLoad(LamRVE rve, const LamLoad *load, LamResponse *respon
   else if (!(load->cohesion >= 0.0) || PetscIsInfOrNanReal(load->cohesion))
     PetscCall(LamRefuse(response, LAM_INVALID_F, "cohesion is %g; it must be finite and not negative",
                         (double)load->cohesion));
+  else if (!(load->duration >= 0.0))
+    PetscCall(
+        LamRefuse(response, LAM_INVALID_F, "the duration is %g s; it must not be negative", (double)load->duration));
   else if (!rve->antiplane && (F[2] != 0.0 || F[5] != 0.0 || F[6] != 0.0 || F[7] != 0.0))
     PetscCall(LamRefuse(response, LAM_INVALID_F,
                         "F has out-of-plane shear, which is not allowed for this RVE (LamRVESetOutOfPlane)"));
+  else if (rve->memory && (F[6] != 0.0 || F[7] != 0.0))
+    PetscCall(LamRefuse(response, LAM_INVALID_F, "F has out-of-plane shear, which walls with memory do not carry"));
   else if (!(det > 0.0) || !(F[8] > 0.0))
     PetscCall(LamRefuse(response, LAM_INVALID_F,
                         "F turns the tissue inside out: in-plane determinant %g, F33 %g; both must be positive",
@@ -267,6 +277,21 @@ static PetscErrorCode FillContact(LamRVE rve, const LamLoad *load, LamResponse *
   /* of facing walls in the exact law, the indicators measure it between the walls themselves */
   response->max_penetration = LamIsExact(rve) ? depths.other : PetscMax(depths.facing, depths.other);
   PetscFunctionReturn(0);
+}
+
+/* Energies of walls with memory, from the ledger of the solution. */
+static void MemoryMeasures(const LamRVEState state, LamResponse *response)
+{
+  const LamMemoryLedger *ledger = &state->ledger;
+  const PetscReal relaxed = ledger->elastic + ledger->retarded - ledger->dissipated; /* stored in springs */
+
+  if (!state->points) {
+    response->stored = response->energy;
+    response->dissipated = response->dissipated_walls = 0.0;
+  }
+  response->stored += relaxed - ledger->step;
+  response->dissipated += ledger->dissipated;
+  response->dissipated_walls += ledger->dissipated;
 }
 
 /* Fills the fields of the solution in rve->y, whose consistent tangent is factored. */
@@ -313,7 +338,8 @@ PetscErrorCode LamEndResponse(LamRVE rve, const LamLoad *load, LamRVEState state
   response->stable = (PetscBool)(response->status == LAM_CONVERGED);
   if (!response->stable || response->zero_modes > 0) response->lowest_eigenvalue = rve->lowest_eigenvalue;
   LamKeepState(rve, load, response->branch, state);
-  if (rve->contact) LamKeepEnergy(response, state);
+  if (rve->memory) MemoryMeasures(state, response);
+  if (rve->contact || rve->memory) LamKeepEnergy(response, state);
   PetscFunctionReturn(0);
 }
 
@@ -331,6 +357,7 @@ PetscErrorCode LamBeginResponse(LamRVE rve, const LamLoad *load, LamRVEState sta
   LamTakeJunctions(rve, state);
   LamLayerTake(rve, state);
   LamTakeAxial(rve, state);
+  LamMemoryTake(rve, state, load->duration);
   PetscFunctionReturn(0);
 }
 
@@ -371,8 +398,9 @@ static PetscErrorCode SolveSection(LamRVE rve, const LamLoad *load, LamRVEState 
 {
   const PetscReal begin = LamClock();
   const PetscBool interrupted = rve->work.stopped; /* the solve before this one */
+  const PetscBool has_history = (PetscBool)(rve->layer || rve->memory);
   const PetscBool looks =
-      (PetscBool)((rve->layer || ((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved)) &&
+      (PetscBool)((has_history || ((rve->wanted & LAM_WANT_JUMPS) && rve->contact && state->solved)) &&
                   !rve->looks_back);
   LamRVEState before = NULL;
 
@@ -392,8 +420,8 @@ static PetscErrorCode SolveSection(LamRVE rve, const LamLoad *load, LamRVEState 
   else if (!rve->work.stopped)
     PetscCall(LamIsNested(rve, state) ? FollowNested(rve, load, state, response) : Follow(rve, load, state, response));
   PetscCall(LamEndResponse(rve, load, state, response));
-  if (looks && rve->layer) PetscCall(LamLayerStep(rve, before, NULL, state, response));
-  if (looks && !rve->layer) PetscCall(LamSeeJump(rve, before, state, response));
+  if (looks && has_history) PetscCall(LamHistoryStep(rve, before, NULL, state, response));
+  if (looks && !has_history) PetscCall(LamSeeJump(rve, before, state, response));
   PetscCall(LamRVEStateDestroy(&before));
   response->seconds = LamClock() - begin;
   PetscFunctionReturn(0);

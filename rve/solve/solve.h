@@ -98,7 +98,8 @@ PetscErrorCode LamRefuseSaddle(LamRVE rve, PetscInt negative, LamResponse *respo
 PetscErrorCode LamContactFollowPath(LamRVE rve, const LamLoad *load, LamRVEState state, LamResponse *response);
 
 /* ---- contact_jump.c ---- */
-/* Stores energy and first derivatives of a response with fields in its state. */
+/* Stores energy and first derivatives of a response with fields in its state, in that of walls with memory what is
+   stored or dissipated. */
 void LamKeepEnergy(const LamResponse *response, LamRVEState state);
 /* Between two states, per V0: work of the derivatives of Psi by the trapezoidal rule, the sum of the absolute values of
    what their changes contribute to it, change of Psi less work, and the largest change of a component of the load. */
@@ -111,6 +112,9 @@ LamStepWork LamStepWorkOf(const LamRVEState from, const LamRVEState to);
 PetscErrorCode LamSeeJump(LamRVE rve, LamRVEState before, LamRVEState state, LamResponse *response);
 
 /* ---- lamella_step.c ---- */
+/* Completes a step of tissue with a history: that of a lamella, as follows, or the work of walls with memory. */
+PetscErrorCode LamHistoryStep(LamRVE rve, LamRVEState before, const LamStressControl *control, LamRVEState state,
+                              LamResponse *response);
 /* Completes a step of tissue with a lamella from `before`: work and jumps, in state and response. A step that is too
    long is taken again in smaller ones, which replace `state` and its response. control: prescribed stress, or NULL. */
 PetscErrorCode LamLayerStep(LamRVE rve, LamRVEState before, const LamStressControl *control, LamRVEState state,
@@ -155,7 +159,8 @@ PetscErrorCode LamRVECreateLike(LamRVE rve, const LamMicrostructure *micro, LamW
 #define LAM_REFERENCE_LOAD ((LamLoad){.F = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}})
 /* Stores the solution held by rve in `state`. */
 void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState state);
-/* Copies the history of the lamella alone. */
+/* Copies the history of the lamella alone; that of walls with memory. */
 PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to);
+PetscErrorCode LamCopyMemory(LamRVEState from, LamRVEState to);
 
 #endif

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 16
+#define MOST_PARTS 18
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -21,13 +21,15 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {&s->branch, sizeof(s->branch)},
                                 {&s->solved, sizeof(s->solved)},
                                 {&s->width, sizeof(s->width)},
-                                {s->energy, s->multipliers ? sizeof(s->energy) : 0},
+                                {s->energy, s->multipliers || s->pairs ? sizeof(s->energy) : 0},
                                 {s->history, (size_t)s->points * sizeof(*s->history)},
                                 {&s->spent, s->points ? sizeof(s->spent) : 0},
                                 {&s->released, s->points ? sizeof(s->released) : 0},
-                                {&s->work, s->points ? sizeof(s->work) : 0},
+                                {&s->work, s->points || s->pairs ? sizeof(s->work) : 0},
                                 {&s->juice, s->points ? sizeof(s->juice) : 0},
                                 {s->burst, (size_t)s->cells * sizeof(*s->burst)},
+                                {s->past, (size_t)s->pairs * sizeof(*s->past)},
+                                {&s->ledger, s->pairs ? sizeof(s->ledger) : 0},
                                 {&s->given, s->axial ? sizeof(s->given) : 0},
                                 {s->z, (size_t)s->axial * sizeof(*s->z)}};
   PetscInt count = 0;
@@ -95,6 +97,15 @@ PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamCopyMemory(LamRVEState from, LamRVEState to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(to->past, from->past, to->pairs));
+  to->ledger = from->ledger;
+  if (to->pairs) to->work = from->work;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
 {
   PetscFunctionBeginUser;
@@ -106,9 +117,10 @@ PetscErrorCode LamRVEStateCreate(LamRVE rve, LamRVEState *state)
   (*state)->points = rve->layer ? rve->layer->count : 0;
   (*state)->cells = rve->mesh.cuts ? rve->mesh.cell_count : 0;
   (*state)->axial = rve->antiplane ? rve->mesh.class_count : 0;
-  PetscCall(PetscMalloc6((*state)->axial, &(*state)->z, (*state)->n, &(*state)->y, (*state)->multipliers,
-                         &(*state)->lambda, (*state)->faces, &(*state)->hats, (*state)->points, &(*state)->history,
-                         (*state)->cells, &(*state)->burst));
+  (*state)->pairs = LamMemoryPairs(rve);
+  PetscCall(PetscMalloc2((*state)->axial, &(*state)->z, (*state)->pairs, &(*state)->past));
+  PetscCall(PetscMalloc5((*state)->n, &(*state)->y, (*state)->multipliers, &(*state)->lambda, (*state)->faces,
+                         &(*state)->hats, (*state)->points, &(*state)->history, (*state)->cells, &(*state)->burst));
   PetscCall(LamRVEStateReset(rve, *state));
   PetscFunctionReturn(0);
 }
@@ -133,7 +145,9 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   for (PetscInt p = 0; p < state->points; ++p) state->history[p] = LAM_UNDAMAGED;
   for (PetscInt c = 0; c < state->cells; ++c) state->burst[c] = PETSC_FALSE;
   state->spent = state->released = state->work = state->juice = 0.0;
-  if (!rve->layer) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(state->past, state->pairs));
+  state->ledger = (LamMemoryLedger){0};
+  if (!rve->layer && !rve->memory) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = 0.0; /* it is the state at its load */
   LamLumenAreas(rve, state->y, rve->seal.area);
   for (PetscInt c = 0; c < rve->mesh.cell_count; ++c)
@@ -145,7 +159,8 @@ PetscErrorCode LamRVEStateDestroy(LamRVEState *state)
 {
   PetscFunctionBeginUser;
   if (!*state) PetscFunctionReturn(0);
-  PetscCall(PetscFree6((*state)->z, (*state)->y, (*state)->lambda, (*state)->hats, (*state)->history, (*state)->burst));
+  PetscCall(PetscFree2((*state)->z, (*state)->past));
+  PetscCall(PetscFree5((*state)->y, (*state)->lambda, (*state)->hats, (*state)->history, (*state)->burst));
   PetscCall(PetscFree(*state));
   PetscFunctionReturn(0);
 }
@@ -163,6 +178,7 @@ void LamKeepState(LamRVE rve, const LamLoad *load, PetscInt branch, LamRVEState 
   state->width = rve->contact && !rve->contact->exact ? rve->smooth->width : 0.0;
   LamLayerKeep(rve, load, state);
   LamKeepAxial(rve, state);
+  LamMemoryKeep(rve, load, state);
   state->load = state->given = *load;
   state->branch = branch;
 }

@@ -139,9 +139,11 @@ LAM_CLONES static void ElementEnergy(const LamElementGeometry *geometry, const L
 }
 
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid)
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal *energy,
+                      PetscBool *valid)
 {
   ElementEnergy(geometry, law, wall, u, F33, energy, valid);
+  if (history && *valid) *energy += LamHistoryEnergy(geometry, history, u, F33);
 }
 
 /* K[a][b] += sum_r left[r][a] right[r][b], over padded rows; three rows of K at a time stay in registers. */
@@ -252,10 +254,11 @@ LAM_CLONES static void ElementEvaluate(const LamElementGeometry *geometry, const
 }
 
 void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
-                        PetscBool *valid)
+                        const LamPoints *history, const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
+                        LamElementResult *out, PetscBool *valid)
 {
   ElementEvaluate(geometry, law, wall, u, F33, stress, out, valid);
+  if (history && *valid) LamHistoryEvaluate(geometry, history, u, F33, out);
 }
 
 LAM_CLONES static void ElementUpdateStress(const LamElementGeometry *geometry, const LamWall *wall,
@@ -369,8 +372,10 @@ LAM_CLONES static void ElementStretch33(const LamElementGeometry *geometry, cons
 }
 
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
-                         PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff)
+                         const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                         const LamElementStress *stress, PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS],
+                         PetscReal *ff)
 {
   ElementStretch33(geometry, law, wall, u, F33, stress, force, fx, ff);
+  if (history) LamHistoryStretch33(geometry, history, F33, force, ff);
 }

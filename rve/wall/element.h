@@ -13,6 +13,9 @@
   Independent stresses (Magisano, Leonetti & Garcea, IJNME 2017; Haggblad & Sundberg, Comput. Struct. 1983): the tangent
   uses p* and s* = dW_fibre/dE, which are updated by their own linearised equations; the residual is the gradient of
   the energy. Newton then converges in few full steps for kappa, C4 >> C1.
+
+  Walls with memory (wall_memory.h) add history : E with the constant `history` of the step, components 11, 12, 22, 33
+  at the points; NULL: no memory.
 */
 #ifndef LAM_RVE_ELEMENT_H
 #define LAM_RVE_ELEMENT_H
@@ -57,13 +60,14 @@ PetscBool LamElementIsValid(const LamElementGeometry *geometry, const PetscReal 
 
 /* Energy only. *valid is PETSC_FALSE if det F or theta is not positive, or if the energy overflows. */
 void LamElementEnergy(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal *energy, PetscBool *valid);
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal *energy,
+                      PetscBool *valid);
 
 /* Energy, residual dPi_e/dx, and tangent with the independent stresses. Updates px, sx, dds and H of `stress`; *valid
    as for LamElementEnergy. */
 void LamElementEvaluate(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                        const PetscReal u[][2], PetscReal F33, LamElementStress *stress, LamElementResult *out,
-                        PetscBool *valid);
+                        const LamPoints *history, const PetscReal u[][2], PetscReal F33, LamElementStress *stress,
+                        LamElementResult *out, PetscBool *valid);
 
 /* Updates the independent stresses: stress* += alpha (stress(u) + d stress(u).(du, dF33) - stress*), at the u of the
    last evaluation. */
@@ -78,37 +82,42 @@ PetscBool LamElementSetConsistentStress(const LamElementGeometry *geometry, cons
 /* Derivatives with respect to F33 at fixed u. force = dPi_e/dF33 uses the stresses of the last evaluation. fx =
    d2Pi_e/dx dF33 and ff = d2Pi_e/dF33^2 use the independent stresses, as the tangent does. */
 void LamElementStretch33(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                         const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, PetscReal *force,
-                         PetscReal fx[LAM_ELEMENT_DOFS], PetscReal *ff);
+                         const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                         const LamElementStress *stress, PetscReal *force, PetscReal fx[LAM_ELEMENT_DOFS],
+                         PetscReal *ff);
 
 /* dPi_e/dx alone; u must be valid. */
 void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS]);
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS]);
 
 /* Fibre stretch sqrt(I4) and largest in-plane principal Cauchy stress at the Gauss points. */
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS]);
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
+                      PetscReal stress[LAM_GAUSS]);
 
 /* Contribution of one Gauss point to integrals over the wall, per reference thickness. */
 typedef struct {
   PetscReal reference, volume; /* reference and current volume */
   PetscReal stretch;           /* int sqrt(I4) dV, reference */
-  PetscReal energy;            /* int W_matrix + W_fibre dV, reference */
+  PetscReal energy;            /* int W_matrix + W_fibre dV, reference, without that of a history */
   PetscReal tension;           /* int m.sigma m dv, current; m: current fibre direction, sigma: Cauchy stress */
   PetscReal ellipticity;       /* int of the smallest stiffness against isochoric shear bands dV (wall_ellipticity.h) */
   PetscReal kinked;            /* reference volume where ellipticity is negative */
 } LamWallPoint;
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS]);
+                          const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                          LamWallPoint points[LAM_GAUSS]);
 
 /* Derivatives with respect to the third component z of the positions of the nodes, g = sum z dN, at the u and the
-   stress of the last evaluation: dPi_e/dz, and its derivatives with respect to z, x and F33. */
+   stress of the last evaluation (with a history: at g = 0): dPi_e/dz, and its derivatives with respect to z, x and F33.
+ */
 typedef struct {
   PetscReal f[LAM_ELEMENT_NODES], K[LAM_ELEMENT_NODES][LAM_ELEMENT_NODES];
   PetscReal mixed[LAM_ELEMENT_NODES][LAM_ELEMENT_DOFS], f33[LAM_ELEMENT_NODES];
 } LamElementAxial;
 void LamElementShear(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                     const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, LamElementAxial *out);
+                     const LamPoints *history, const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
+                     LamElementAxial *out);
 
 /* Nine-node shape functions and their derivatives at (xi, eta) in [-1, 1]^2; node order of LamMesh. */
 void LamShape(PetscReal xi, PetscReal eta, PetscReal N[9], PetscReal dN[9][2]);

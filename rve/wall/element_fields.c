@@ -40,14 +40,15 @@ LAM_CLONES static void ElementForces(const LamElementGeometry *geometry, const L
 }
 
 void LamElementForces(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal f[LAM_ELEMENT_DOFS])
 {
   ElementForces(geometry, law, wall, u, F33, f);
+  if (history) LamHistoryForces(geometry, history, u, f);
 }
 
 LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                     const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
-                                     PetscReal stress[LAM_GAUSS])
+                                     const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                                     PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS])
 {
   LamPoints F[4], extension;
   LamElementStress local;
@@ -55,6 +56,7 @@ LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const L
 
   FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
   TiltedExtension(geometry, wall, F33, extension);
+  if (history) LamHistoryPoints(geometry, history, (const LamPoints *)F, &at);
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal scale = 1.0 / (geometry->weight[g] * (F[0][g] * F[3][g] - F[1][g] * F[2][g]) * F33);
     const PetscReal s11 = scale * (at.P[0][g] * F[0][g] + at.P[1][g] * F[1][g]); /* sigma = P F^T / J */
@@ -67,13 +69,15 @@ LAM_CLONES static void ElementFields(const LamElementGeometry *geometry, const L
 }
 
 void LamElementFields(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                      const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS], PetscReal stress[LAM_GAUSS])
+                      const LamPoints *history, const PetscReal u[][2], PetscReal F33, PetscReal fibre[LAM_GAUSS],
+                      PetscReal stress[LAM_GAUSS])
 {
-  ElementFields(geometry, law, wall, u, F33, fibre, stress);
+  ElementFields(geometry, law, wall, history, u, F33, fibre, stress);
 }
 
 LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                                         const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+                                         const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                                         LamWallPoint points[LAM_GAUSS])
 {
   LamPoints F[4], Fm[2], extension, along; /* of the fibres, and of the wall in the section */
   LamElementStress local;
@@ -81,6 +85,7 @@ LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, con
   PetscReal h[2][2];
 
   FindWallStress(geometry, law, wall, u, F33, F, extension, &local, &at);
+  if (history) LamHistoryPoints(geometry, history, (const LamPoints *)F, &at);
   AlongFibre(geometry, F, Fm);
   StructureTensor(geometry, wall, h);
   for (PetscInt g = 0; g < LAM_POINTS; ++g) along[g] = extension[g];
@@ -109,7 +114,8 @@ LAM_CLONES static void ElementWallPoints(const LamElementGeometry *geometry, con
 }
 
 void LamElementWallPoints(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                          const PetscReal u[][2], PetscReal F33, LamWallPoint points[LAM_GAUSS])
+                          const LamPoints *history, const PetscReal u[][2], PetscReal F33,
+                          LamWallPoint points[LAM_GAUSS])
 {
-  ElementWallPoints(geometry, law, wall, u, F33, points);
+  ElementWallPoints(geometry, law, wall, history, u, F33, points);
 }

@@ -274,4 +274,29 @@ LAM_INLINE void FindStress(const LamElementGeometry *geometry, const LamWallLaw 
   }
 }
 
+/* E = (H + H^T + H^T H)/2: components 11, 12, 22, 33. */
+LAM_INLINE void GreenStrain(const LamPoints H[4], PetscReal H33, LamPoints E[4])
+{
+  LAM_EACH_POINT(g)
+  {
+    E[0][g] = H[0][g] + 0.5 * (H[0][g] * H[0][g] + H[2][g] * H[2][g]);
+    E[1][g] = 0.5 * (H[1][g] + H[2][g] + H[0][g] * H[1][g] + H[2][g] * H[3][g]);
+    E[2][g] = H[3][g] + 0.5 * (H[1][g] * H[1][g] + H[3][g] * H[3][g]);
+    E[3][g] = H33 * (1.0 + 0.5 * H33);
+  }
+}
+
+/* ---- element_history.c: history : E of walls with memory, and its derivatives F history and 1 (x) history ---- */
+PetscReal LamHistoryEnergy(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                           PetscReal F33);
+/* Add to what walls without memory have; F33 is not coupled. Points: times the weights. */
+void LamHistoryEvaluate(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                        PetscReal F33, LamElementResult *out);
+void LamHistoryForces(const LamElementGeometry *geometry, const LamPoints *history, const PetscReal u[][2],
+                      PetscReal f[LAM_ELEMENT_DOFS]);
+void LamHistoryStretch33(const LamElementGeometry *geometry, const LamPoints *history, PetscReal F33, PetscReal *force,
+                         PetscReal *ff);
+void LamHistoryPoints(const LamElementGeometry *geometry, const LamPoints *history, const LamPoints F[4],
+                      PointStress *out);
+
 #endif

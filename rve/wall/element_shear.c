@@ -59,7 +59,8 @@ static void FindShear(const LamElementGeometry *geometry, const LamWallLaw *law,
 }
 
 void LamElementShear(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,
-                     const PetscReal u[][2], PetscReal F33, const LamElementStress *stress, LamElementAxial *out)
+                     const LamPoints *history, const PetscReal u[][2], PetscReal F33, const LamElementStress *stress,
+                     LamElementAxial *out)
 {
   PointShear at;
   LamPoints H[4];
@@ -67,6 +68,11 @@ void LamElementShear(const LamElementGeometry *geometry, const LamWallLaw *law, 
   *out = (LamElementAxial){0};
   Gradient(geometry, u, H);
   FindShear(geometry, law, wall, (const LamPoints *)H, F33, stress, &at);
+  for (PetscInt k = 0; k < 4 && history; ++k) /* history : E, of E = 1/2 (g (x) g) */
+    LAM_EACH_POINT(g)
+    {
+      at.A[k / 2][k % 2][g] += geometry->weight[g] * history[k == 0 ? 0 : k == 3 ? 2 : 1][g];
+    }
   for (PetscInt g = 0; g < LAM_GAUSS; ++g) {
     const PetscReal *dN[2] = {geometry->dN[2 * g], geometry->dN[2 * g + 1]};
 

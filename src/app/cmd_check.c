@@ -154,6 +154,16 @@ static json_t *Warnings(const Check *check)
   return list;
 }
 
+static json_t *Relaxation(const LamRelaxation *relaxation)
+{
+  json_t *terms = json_array();
+
+  for (PetscInt i = 0; i < relaxation->terms; i++)
+    json_array_append_new(
+        terms, json_pack("{s:f, s:f}", "share", (double)relaxation->share[i], "time", (double)relaxation->time[i]));
+  return terms;
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -186,6 +196,7 @@ static PetscErrorCode PrintObject(const Check *check)
     json_object_set_new(o, "strategy", json_string(LamStrategyNames[scene->strategy]));
   }
   if (micro->interface == LAM_INTERFACE_LAMELLA) json_object_set_new(o, "lamella", Lamella(micro, &scene->scales));
+  if (LamWallsRelax(micro)) json_object_set_new(o, "relaxation", Relaxation(&micro->relaxation));
   if (LamWallsTear(micro)) json_object_set_new(o, "tearing", Tearing(micro, &scene->scales));
   if (plan->load_states)
     json_object_set_new(o, "load",
@@ -302,6 +313,19 @@ static void PrintWall(const LamWall *wall, PetscReal MPa)
   printf(", bulk modulus %.4g MPa\n", (double)(wall->bulk_modulus * MPa));
 }
 
+static void PrintRelaxation(const LamRelaxation *relaxation)
+{
+  PetscReal left = 1;
+
+  if (!relaxation->terms) return;
+  printf("  relaxes    ");
+  for (PetscInt i = 0; i < relaxation->terms; i++) {
+    printf("%.4g %% with %.4g s, ", (double)(100 * relaxation->share[i]), (double)relaxation->time[i]);
+    left -= relaxation->share[i];
+  }
+  printf("%.4g %% stay\n", (double)(100 * left));
+}
+
 static void PrintChoice(const LamScene *scene, const LamMeshTrial *trial)
 {
   printf(" (chosen for an accuracy of %.2g %%", (double)(100 * scene->accuracy));
@@ -328,6 +352,7 @@ static void PrintModel(const Check *check)
   printf(", wall %.4g of the apothem (%.4g um), face normal 0 at %.4g deg\n", (double)micro->wall_thickness,
          (double)(1e6 * scene->scales.length), (double)(micro->orientation * 180 / PETSC_PI));
   PrintWall(&micro->wall, MPa);
+  PrintRelaxation(&micro->relaxation);
   if (LamWallsTear(micro)) PrintTearing(micro, &scene->scales);
   if (check->plan.spread.kinds) PrintSpread(&check->plan.spread, micro->interface, MPa);
   PrintInterface(scene, micro);

@@ -99,6 +99,19 @@ static void SetFromInflated(json_t *object, const LamRVERun *run, const LamRespo
   json_object_set_new(object, "from_inflated", LamFromInflatedToJSON(F, P, &run->scene->scales));
 }
 
+/* The time of a state, on which walls with memory depend, and what they have dissipated. */
+static void PrintTime(const LamRVERun *run, const LamResponse *response)
+{
+  const PetscReal energy = run->scene->scales.stress * 1e-3;
+
+  if (!LamWallsRelax(&run->scene->micro) || !LamAppIsRoot()) return;
+  printf("      at %.6g s", (double)run->time);
+  if (LamResponseHasFields(response))
+    printf(": stored %.4g, dissipated %.4g kJ/m^3", (double)(response->stored * energy),
+           (double)(response->dissipated * energy));
+  putchar('\n');
+}
+
 static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, const LamResponse responses[2])
 {
   const LamScales *scales = &run->scene->scales;
@@ -106,6 +119,7 @@ static PetscErrorCode PrintObject(const Command *command, const LamRVERun *run, 
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseToJSON(&responses[0], scales, run->solved, command->tangent, &object));
+  if (LamWallsRelax(&run->scene->micro)) json_object_set_new(object, "time", json_real((double)run->time));
   SetPrescribed(object, LamRVERunControl(run, run->solved), scales->stress * 1e-6);
   SetFromInflated(object, run, &responses[0]);
   PetscCall(SetCellDifference(object, run, &responses[0]));
@@ -139,6 +153,7 @@ static PetscErrorCode Report(void *ctx, const LamRVERun *run, const LamResponse 
   }
   if (run->scene->inflate) LamTestMeasures(&run->test, &responses[0], shown.load.F, shown.P);
   PetscCall(LamPrintResponseRow(&shown, scales, run->scene->micro.interface, run->solved));
+  PrintTime(run, &shown);
   TellSmoothLaw(run, &shown, command);
   if (run->second_mesh) PrintSecondMesh(responses);
   if (run->find_failure) LamFailurePrintState(&responses[0], &run->scene->strength, scales);

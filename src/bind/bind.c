@@ -367,6 +367,10 @@ static PetscErrorCode Solve(LamBindRVE bound, int n, const double loads[], const
       "%s: rve.interface.law: lamella: the error is estimated along the scene's own loads alone, whose history is "
       "known",
       bound->scene->path);
+  PetscCheck(!LamWallsRelax(&bound->scene->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: loads given here have no time, on which walls with memory depend; solve the "
+             "scene's own loads",
+             bound->scene->path);
   PetscCall(LamMeshesSetWanted(&bound->meshes, Wanted(derivatives)));
   if (estimate) PetscCall(LamRVEEstimateCreate(bound->meshes.rve[0], &made));
   ierr = SolveLoads(bound, made, n, loads, P, responses);

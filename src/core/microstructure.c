@@ -43,6 +43,16 @@ static void DescribeWall(const LamWall *wall, FILE *out)
   fprintf(out, "\"bulk_modulus\": %.12g}", Clean(wall->bulk_modulus));
 }
 
+/* What is left out where walls have no memory: "relaxation": [[share, time in s], ...] */
+static void DescribeRelaxation(const LamRelaxation *relaxation, FILE *out)
+{
+  if (!relaxation->terms) return;
+  fprintf(out, ", \"relaxation\": [");
+  for (PetscInt i = 0; i < relaxation->terms; i++)
+    fprintf(out, "%s[%.12g, %.12g]", i ? ", " : "", Clean(relaxation->share[i]), (double)relaxation->time[i]);
+  fprintf(out, "]");
+}
+
 /* {"strength": ..., "fracture_energy": ...}, of `size` factors each. */
 static void DescribeFactors(const char name[], PetscInt size, const PetscReal strength[], const PetscReal energy[],
                             FILE *out)
@@ -113,6 +123,7 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
   if (micro->grading != 0) fprintf(out, ", \"grading\": %.12g", Clean(micro->grading));
   fprintf(out, "}, ");
   DescribeWall(&micro->wall, out);
+  DescribeRelaxation(&micro->relaxation, out);
   fprintf(out, ", \"interface\": {\"law\": \"%s\"", LamInterfaceLawNames[micro->interface]);
   if (LamCellsPart(micro->interface)) fprintf(out, ", \"clearance\": %.12g", Clean(micro->clearance));
   if (LamCellsPart(micro->interface) && micro->sharpness == LAM_SHARPNESS_SMOOTH)
@@ -326,17 +337,28 @@ static PetscBool ParseInterface(json_t *object, LamMicrostructure *m)
   return (PetscBool)(found >= 0);
 }
 
+static PetscBool ParseRelaxation(json_t *array, LamRelaxation *relaxation)
+{
+  const size_t terms = json_array_size(array);
+
+  if (terms < 1 || terms > LAM_RELAXATION_TERMS) return PETSC_FALSE;
+  for (size_t i = 0; i < terms; i++)
+    if (json_unpack(json_array_get(array, i), "[F,F]", &relaxation->share[i], &relaxation->time[i])) return PETSC_FALSE;
+  relaxation->terms = (PetscInt)terms;
+  return PETSC_TRUE;
+}
+
 static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
 {
-  json_t *wall, *interface, *patch = NULL, *tissue = NULL, *cells_that_differ = NULL;
+  json_t *wall, *interface, *patch = NULL, *tissue = NULL, *cells_that_differ = NULL, *relaxation = NULL;
   int cells[2], along, through;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?{s:F, s:F, s:F}}",
+  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?o, s?{s:F, s:F, s:F}}",
                   "wall_thickness", &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1],
                   "patch", &patch, "tissue", &tissue, "mesh", "along", &along, "through", &through, "grading",
-                  &m->grading, "wall", &wall, "interface", &interface, "cell", &cells_that_differ, "tearing",
-                  "strength", &m->tearing.strength, "fracture_energy", &m->tearing.energy, "stiffness",
-                  &m->tearing.stiffness))
+                  &m->grading, "wall", &wall, "interface", &interface, "relaxation", &relaxation, "cell",
+                  &cells_that_differ, "tearing", "strength", &m->tearing.strength, "fracture_energy",
+                  &m->tearing.energy, "stiffness", &m->tearing.stiffness))
     return PETSC_FALSE;
   if (cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;
   for (int i = 0; i < 2; i++) m->cells[i] = cells[i];
@@ -345,6 +367,7 @@ static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
   m->along = along;
   m->through = through;
   return (PetscBool)(ParseWall(wall, &m->wall) && ParseInterface(interface, m) && (!patch || ParsePatch(patch, m)) &&
+                     (!relaxation || ParseRelaxation(relaxation, &m->relaxation)) &&
                      (!cells_that_differ || ParseCells(cells_that_differ, m)));
 }
 

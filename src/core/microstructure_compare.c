@@ -21,6 +21,7 @@ static const struct {
     {"interface.shear_strength", "rve.interface.shear.strength over C1 + C2", 1},
     {"interface.shear_energy", "rve.interface.shear.fracture_energy over (C1 + C2) apothem", 1},
     {"interface.junction_length", "rve.interface.junction.length over apothem", 1},
+    {"relaxation", "rve.wall.relaxation", 1},
     {"tearing", "strength.wall_fracture_energy", 1},
     {"tearing.strength", "strength.wall over C1 + C2", 1},
     {"tearing.fracture_energy", "strength.wall_fracture_energy over (C1 + C2) apothem", 1},

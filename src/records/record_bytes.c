@@ -144,7 +144,7 @@ PetscErrorCode LamRecordsPack(PetscInt n, const PetscInt64 keys[], const LamResp
 
 PetscErrorCode LamRecordUnpack(const LamRecordLayout *layout, const unsigned char *bytes, LamResponse *response)
 {
-  const LamLoad load = {{0}, 0, 0};
+  const LamLoad load = {.turgor = 0};
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(&load, response)); /* members missing in the file are unknown */

@@ -180,6 +180,8 @@ PetscErrorCode LamSceneSetStiffness(const LamNode *given, const LamNode *energy,
   NULL: the defaults of the keys.
 */
 PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, const LamWall *own, LamWall *wall);
+/* Reads the relaxation of the walls, none where it is not given. */
+PetscErrorCode LamSceneBuildRelaxation(const LamNode *root, LamRelaxation *relaxation);
 /* Rejects a factor that takes a wall parameter beyond the upper bound of its key in some wall of the scene. */
 PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor);
 /* Rejects an F that is not a deformation gradient, if its components are given; any: shears out of the plane are allowed.

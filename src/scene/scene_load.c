@@ -44,6 +44,11 @@ static const LamKey load_keys[] = {
     {STRESS("load[].cohesion"), INTO(LamLoad, cohesion), FROM(0),
      .default_words = "`rve.interface.cohesion`, or `residual_cohesion`", .example = "0.001 MPa",
      .help = "Cohesion of this entry's states; not with law `bonded`."},
+    {TIME("load[].for"), FROM(0), .default_words = "none: required with `rve.wall.relaxation`", .example = "10 s",
+     .help =
+         "How long it takes from the state before, in a ramp all of its steps; 0 s: at once. Only with "
+         "`rve.wall.relaxation`. In a step the elastic stress of the walls goes straight to its new value; the error "
+         "is of second order in its length, and none where F is held or jumps."},
 };
 LAM_KEY_TABLE(LamLoadKeys, load_keys);
 
@@ -222,6 +227,21 @@ static PetscErrorCode BuildPressures(const LamNode *entry, const LamScene *scene
   PetscFunctionReturn(0);
 }
 
+/* The time of each of an entry's states, which walls with memory need. */
+static PetscErrorCode BuildDuration(const LamNode *entry, const LamScene *scene, PetscInt states, LamLoad *load)
+{
+  const LamNode *duration = LamNodeFind(entry, "for");
+
+  PetscFunctionBeginUser;
+  LamSceneCheckName(!duration || LamWallsRelax(&scene->micro), duration,
+                    "says nothing of walls without memory; leave it out, or write rve.wall.relaxation");
+  LamSceneRequire(duration || !LamWallsRelax(&scene->micro), entry, "for",
+                  "missing: walls with rve.wall.relaxation need a time; write how long it takes, such as 10 s, or 0 s: "
+                  "at once");
+  load->duration = duration ? duration->value.number[0] / (PetscReal)states : 0.0;
+  PetscFunctionReturn(0);
+}
+
 /* F of one step of a linear path; *known is PETSC_FALSE if an in-plane component is not known yet. */
 static void StepF(const PetscReal start[9], const PetscReal end[9], const LamStressControl *control, PetscReal s,
                   PetscReal F[9], PetscBool *known)
@@ -243,6 +263,7 @@ static PetscErrorCode BuildInflated(const LamNode *entry, LamScene *scene)
                   "missing, and rve.turgor is, too: nothing inflates the tissue; write turgor: 0.1 MPa");
   scene->loads[0] = (LamLoad){.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   PetscCall(BuildPressures(entry, scene, &scene->loads[0]));
+  PetscCall(BuildDuration(entry, scene, 1, &scene->loads[0]));
   LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_CONTACT || scene->loads[0].cohesion > 0.0,
                     LamNodeFind(entry, "inflate"),
                     "free tissue of law: contact is held together by the lamella alone, and there is no cohesion; give "
@@ -267,6 +288,9 @@ static PetscErrorCode BuildDissipation(const LamNode *entry, const Target *targe
                     "does not go with strength.wall_fracture_energy: cells burst in jumps; leave one of them out");
   LamSceneCheckName(!HasShear33(target->F->value.number), node,
                     "does not go with out-of-plane shear; leave one of them out");
+  LamSceneCheckName(!LamWallsRelax(&scene->micro), node,
+                    "does not go with rve.wall.relaxation: when its states are reached is not known before; leave one "
+                    "of them out");
   LamSceneCheckName(!target->P, node, "stands beside a prescribed stress; give all of F, or leave it out");
   LamSceneCheckName(!entry->next, node, "is for the last entry: where its ramp ends is not known before");
   LamSceneCheckName(scene->load_count > 0, node,
@@ -298,6 +322,7 @@ static PetscErrorCode BuildEntry(const LamNode *entry, LamScene *scene)
   if (scene->load_count > (scene->inflate ? 1 : 0) && scene->controls) before = scene->controls[scene->load_count - 1];
   PetscCall(PetscArraycpy(start, load.F, 9));
   PetscCall(BuildPressures(entry, scene, &load));
+  PetscCall(BuildDuration(entry, scene, target.states, &load));
   for (PetscInt k = 1; k <= target.states; k++) {
     PetscBool known;
 

@@ -229,6 +229,9 @@ PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene)
   LamSceneCheckName(scene->micro.interface != LAM_INTERFACE_LAMELLA, block,
                     "this version of Lamella does not have maps of law: lamella yet; leave it out, or write law: "
                     "bonded or contact");
+  LamSceneCheckName(!LamWallsRelax(&scene->micro), block,
+                    "follows loads without time, on which walls with memory, rve.wall.relaxation, depend; leave one of "
+                    "them out");
   scene->has_map = PETSC_TRUE;
   for (int a = 0; a < LAM_MAP_AXIS_COUNT; a++)
     PetscCall(BuildAxis(LamNodeFind(block, axes[a]), scene, &nodes, &scene->map[a]));

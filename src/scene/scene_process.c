@@ -382,6 +382,9 @@ static PetscErrorCode BuildKinetics(const LamNode *list, LamScene *scene)
     LamSceneCheck(!given[changing], of, "has an entry already; leave one of them out");
     given[changing] = PETSC_TRUE;
     PetscCall(CheckChanging(of, changing, scene));
+    LamSceneCheck(parameter < 0 || parameter >= LAM_WALL_PARAMETER_COUNT || !LamWallsRelax(&scene->micro), of,
+                  "would change walls with memory, rve.wall.relaxation, in part, and what of their past would change "
+                  "with it is not known; write walls, with which all of it changes");
     PetscCall(ReadKinetics(entry, &scene->process.kinetics[changing]));
     if (parameter >= 0 && parameter < LAM_WALL_PARAMETER_COUNT)
       PetscCall(LamSceneCheckFactor(of, scene, parameter, LamKineticsLargest(&scene->process.kinetics[changing])));

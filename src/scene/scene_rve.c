@@ -155,6 +155,7 @@ static PetscErrorCode BuildRVE(const LamNode *root, const LamSceneTissue *tissue
   scales->stress = C1->value.number[0] + C2->value.number[0];
   PetscCall(LamSceneCheckScale(C1, scales->stress));
   PetscCall(LamSceneReadWall(LamNodeFind(root, "rve.wall"), scales, NULL, &micro->wall));
+  PetscCall(LamSceneBuildRelaxation(root, &micro->relaxation));
   micro->grading = LamNodeFind(rve, "mesh.along") ? 0.0 : -1.0; /* negative: the planner chooses */
   PetscCall(LamSceneFill(root, scales, LamScene, scene));
   LamSceneCheckName(!patch || !cells, cells,

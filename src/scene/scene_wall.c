@@ -27,8 +27,48 @@ static const LamKey wall_keys[] = {
     {ANGLE("rve.wall.fibre_angle"), INTO(LamWall, fibre_angle), FROM(-90), TO(90), .default_value = "0 deg",
      .help = "Angle between the fibres and the section of the cells: 0 along the wall in the section, 90 deg along the "
              "cells' axis, X3. Between them fibres wind around the cells as a helix, which couples stretch and twist."},
+    {LIST("rve.wall.relaxation"), .default_words = "walls have no memory",
+     .example = "[{share: 0.3, time: 10 s}, {share: 0.2, time: 10 min}]",
+     .help =
+         "How stress relaxes in walls whose strain is held, in all of them alike: a Prony series of 1 to 3 terms on "
+         "the stress of matrix and fibres. C1, C2 and those of the fibres are the moduli at once; a change of volume "
+         "is resisted as ever. For `rve`, and for `process` at a material point."},
+    {MAP("rve.wall.relaxation[]"), .example = "{share: 0.3, time: 10 s}", .help = "One term."},
+    {REAL("rve.wall.relaxation[].share"), REQUIRED, ABOVE(0), BELOW(1), .example = "0.3",
+     .help = "Share of the moduli that is lost; all terms together less than 1."},
+    {TIME("rve.wall.relaxation[].time"), REQUIRED, FROM(0), .example = "10 s",
+     .help = "Relaxation time: after it 1/e of this share is left."},
 };
 LAM_KEY_TABLE(LamWallKeys, wall_keys);
+
+PetscErrorCode LamSceneBuildRelaxation(const LamNode *root, LamRelaxation *relaxation)
+{
+  const LamNode *list = LamNodeFind(root, "rve.wall.relaxation"), *tilted = LamNodeFind(root, "rve.wall.fibre_angle");
+  PetscReal sum = 0.0;
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(!list || list->count > 0, list, "has no term; write one, such as %s, or leave it out",
+                LamKeyFind("rve.wall.relaxation[]")->example);
+  LamSceneCheck(!list || list->count <= LAM_RELAXATION_TERMS, list, "has %d terms; at most %d are kept in mind",
+                (int)(list ? list->count : 0), LAM_RELAXATION_TERMS);
+  for (const LamNode *term = list ? list->first : NULL; term; term = term->next) {
+    const LamNode *share = LamNodeFind(term, "share"), *time = LamNodeFind(term, "time");
+    const PetscInt i = relaxation->terms++;
+
+    LamSceneCheck(!tilted || tilted->value.number[0] == 0.0, list,
+                  "does not go with fibre_angle: walls with memory have fibres in the section; leave one of them out");
+    relaxation->share[i] = share->value.number[0];
+    relaxation->time[i] = time->value.number[0];
+    LamSceneCheck(relaxation->time[i] > 0.0, time,
+                  "is no time in which this share could be felt; leave the term out, and the share out of the moduli");
+    sum += relaxation->share[i];
+    LamSceneCheck(sum < 1.0, share,
+                  "leaves nothing in the end, %g of the moduli being lost: walls would flow, without a shape to return "
+                  "to; write shares of less than 1 in all",
+                  (double)sum);
+  }
+  PetscFunctionReturn(0);
+}
 
 /* Checks whether a parameter, given or missing, agrees with the law; `own` as in LamSceneReadWall. */
 static PetscErrorCode CheckParameter(const LamNode *map, PetscInt k, const LamWall *own, LamWall *wall)

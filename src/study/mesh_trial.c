@@ -106,6 +106,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
   micro.is_patch = PETSC_FALSE;
   micro.along = mesh.along;
   micro.tearing = (LamTearing){0}; /* at loads that hardly break anything cuts are closed */
+  micro.relaxation.terms = 0;      /* walls as they are at once */
   micro.through = mesh.through;
   micro.grading = Lists[LamCellsPart(micro.interface)].grading;
   PetscCall(LamRVECreate(PETSC_COMM_SELF, &c->rve));

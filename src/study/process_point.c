@@ -73,7 +73,16 @@ static PetscBool IsChosen(const LamProcessStudy *study, PetscInt k)
 
 static PetscBool HasHistory(const LamProcessStudy *study)
 {
-  return (PetscBool)(study->scene->micro.interface == LAM_INTERFACE_LAMELLA);
+  return LamHasHistory(&study->scene->micro);
+}
+
+/* From the state before; the first has been there for ever. */
+static PetscReal DurationOf(const LamProcessStudy *study, PetscInt k)
+{
+  const LamProcessState *state = &study->history.states[k];
+
+  if (!HasHistory(study)) return 0;
+  return k ? PetscMax(0, state[0].time - state[-1].time) : PETSC_INFINITY;
 }
 
 static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState at, PetscInt k)
@@ -89,8 +98,9 @@ static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState
   PetscFunctionBeginUser;
   load.turgor /= unit;
   load.cohesion /= unit;
+  load.duration = DurationOf(study, k);
   scales.stress *= unit;
-  if (HasHistory(study) || !LamProcessWallsStayAlike(study->scene))
+  if (study->scene->micro.interface == LAM_INTERFACE_LAMELLA || !LamProcessWallsStayAlike(study->scene))
     PetscCall(LamFE2ChangeTissue(study->response.tissues.tissues, &factors));
   PetscCall(LamRVESolve(rve, &load, at, &response));
   if (!LamResponseHasFields(&response)) {

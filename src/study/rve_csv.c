@@ -35,6 +35,12 @@
   X("dissipated (kJ/m^3)", (r->dissipated) * MPa * 1e3)                                                                \
   X("dissipated_walls (kJ/m^3)", (r->dissipated_walls) * MPa * 1e3)                                                    \
   X("released (kJ/m^3)", (r->released) * MPa * 1e3)
+/* Those of walls with memory. */
+#define MEMORY_COLUMNS(X)                                                                                              \
+  X("time (s)", run->time)                                                                                             \
+  X("work (kJ/m^3)", (r->work) * MPa * 1e3)                                                                            \
+  X("stored (kJ/m^3)", (r->stored) * MPa * 1e3)                                                                        \
+  X("dissipated (kJ/m^3)", (r->dissipated) * MPa * 1e3)
 /* Those of a patch with a notch. */
 #define CRACK_COLUMNS(X)                                                                                               \
   X("crack_faces", (PetscReal)r->crack_faces)                                                                          \
@@ -66,6 +72,9 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
   if (HasLamella(run)) {
     LAMELLA_COLUMNS(PRINT_NAME)
   }
+  if (LamWallsRelax(&run->scene->micro)) {
+    MEMORY_COLUMNS(PRINT_NAME)
+  }
   if (run->scene->micro.notch_columns) {
     CRACK_COLUMNS(PRINT_NAME)
   }
@@ -90,6 +99,9 @@ void LamRVECSVAdd(LamRVERun *run, const LamResponse *r)
   COLUMNS(PRINT_VALUE)
   if (HasLamella(run)) {
     LAMELLA_COLUMNS(PRINT_VALUE)
+  }
+  if (LamWallsRelax(&run->scene->micro)) {
+    MEMORY_COLUMNS(PRINT_VALUE)
   }
   if (run->scene->micro.notch_columns) {
     CRACK_COLUMNS(PRINT_VALUE)

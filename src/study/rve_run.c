@@ -55,6 +55,11 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
                run->scene->path);
     run->no_estimate = PETSC_TRUE; /* another mesh finds other loads */
   }
+  PetscCheck(!LamWallsRelax(&run->scene->micro) || (!run->find_onset && !run->find_failure && !run->global),
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: --onset, --failure and --global look for states beside those of the load, which "
+             "have no time; leave them out",
+             run->scene->path);
   PetscCheck(run->scene->load_count, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `load`, which says what states to solve", run->scene->path);
   PetscCall(LamPlanMake(run->scene, &plan));
@@ -214,6 +219,7 @@ PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2])
   if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
   if (run->meshes.stopped) PetscFunctionReturn(0);
   if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
+  run->time += run->scene->loads[run->solved].duration;
   run->solved++;
   if (run->readings || run->writer)
     PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
@@ -263,6 +269,23 @@ static PetscErrorCode WriteTest(LamRVERun *run)
   PetscFunctionReturn(0);
 }
 
+/* When the states were reached, of walls with memory. */
+static PetscErrorCode WriteTimes(LamRVERun *run)
+{
+  const PetscInt n = run->solved;
+  PetscReal *times, time = 0;
+  PetscErrorCode ierr;
+
+  PetscFunctionBeginUser;
+  if (!n || !LamWallsRelax(&run->scene->micro)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &times));
+  for (PetscInt k = 0; k < n; k++) times[k] = time += run->scene->loads[k].duration;
+  ierr = LamRecordWriterReals(run->writer, "/time", 1, &n, times, "s");
+  PetscCall(PetscFree(times));
+  PetscCall(ierr);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVERunSolve(LamRVERun *run)
 {
   PetscErrorCode ierr = 0;
@@ -276,6 +299,7 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
   }
   if (!ierr) ierr = SolveStates(run);
   if (!ierr && run->writer) ierr = WriteTest(run);
+  if (!ierr && run->writer) ierr = WriteTimes(run);
   if (run->csv.out) {
     const PetscErrorCode written = LamBesideClose(&run->csv);
 

@@ -53,6 +53,10 @@ PetscErrorCode LamRefuseHistory(const char path[], const LamMicrostructure *micr
       "%s: rve.interface.law: lamella: its responses depend on history, which %s does not have; write law: bonded "
       "or contact%s",
       path, what, remedy);
+  PetscCheck(!LamWallsRelax(micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: responses of walls with memory depend on time, which %s does not have; leave it "
+             "out%s",
+             path, what, remedy);
   PetscFunctionReturn(0);
 }
 

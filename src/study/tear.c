@@ -337,6 +337,8 @@ static PetscErrorCode CheckScene(const LamScene *scene)
              "%s: rve.interface.law: %s: has no energy of fracture, without which tissue does not tear; write law: "
              "lamella, with strength and fracture_energy",
              scene->path, LamInterfaceLawNames[micro->interface]);
+  PetscCheck(!LamWallsRelax(micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: the law of a layer is one without time; leave it out", scene->path);
   PetscCheck(!micro->is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.patch: a block of cells between grips is no layer that goes on to both sides; write rve.cells",
              scene->path);

@@ -39,7 +39,7 @@ static const char *WhyNotTable(const LamScene *scene)
 {
   if (!scene->has_sample) return "the scene has no block sample";
   if (scene->sealed) return "a table has no responses of sealed cells";
-  if (scene->micro.interface == LAM_INTERFACE_LAMELLA) return "a table has no tissue with history";
+  if (LamHasHistory(&scene->micro)) return "a table has no tissue with history";
   return NULL;
 }
 

@@ -193,6 +193,11 @@ static PetscErrorCode CompareBonded(PetscInt along, PetscInt through)
   other.load.turgor = NEXT_TO_NOTHING;
   PetscCall(Compare("turgor", &off, &other));
 
+  off = NewProblem("no memory", &micro, &dry);
+  other = NewProblem("with memory, at once", &micro, &dry);
+  other.micro.relaxation = (LamRelaxation){.terms = 1, .share = {0.5}, .time = {1}};
+  PetscCall(Compare("memory of the walls", &off, &other));
+
   off = NewProblem("pressures prescribed", &micro, &turgid);
   other = NewProblem("room for pressures that are unknown", &micro, &turgid);
   other.sealable = PETSC_TRUE;

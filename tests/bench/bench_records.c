@@ -80,7 +80,7 @@ static void Print(const char what[], PetscLogDouble start, double processor, dou
 
 static PetscErrorCode Read(void)
 {
-  const LamLoad load = {{1.05, 0.02, 0, 0.01, 1.08, 0, 0, 0, 1}, 0.15, 0};
+  const LamLoad load = {.F = {1.05, 0.02, 0, 0.01, 1.08, 0, 0, 0, 1}, .turgor = 0.15};
   const double before = Memory("VmRSS"), processor = ProcessorSeconds();
   const LamResponse *records;
   PetscLogDouble start;

@@ -44,6 +44,7 @@
 #include "../../rve/cells/outline.c"
 #include "../../rve/cells/mesh.c"
 #include "../../rve/wall/element.c"
+#include "../../rve/wall/element_history.c"
 #include "../../rve/wall/element_fields.c"
 #include "../../rve/wall/wall_law.c"
 #include "../../rve/wall/matrix_mooney_rivlin.c"

@@ -31,7 +31,7 @@ static void MakeDatabase(void)
   PetscErrorCode ierr = LamSceneRead(LAMELLA_SOURCE_DIR "/tests/scenes/shear-bonded.yaml", &scene);
 
   for (int i = 0; !ierr && i < 3; i++) {
-    const LamLoad load = {{1, 0.1 * i, 0, 0, 1, 0, 0, 0, 1}, scene->turgor, 0};
+    const LamLoad load = {.F = {1, 0.1 * i, 0, 0, 1, 0, 0, 0, 1}, .turgor = scene->turgor};
 
     ierr = LamResponseInit(&load, &responses[i]);
     memset(responses[i].P, 0, sizeof(responses[i].P));

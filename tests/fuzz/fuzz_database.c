@@ -15,7 +15,8 @@ static PetscErrorCode QueryAll(LamDatabase database)
 
   PetscFunctionBeginUser;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(shears); i++) {
-    const LamLoad load = {{1.01, shears[i], 0, 0, 1.02, 0, 0, 0, 1}, 0.02 / 0.11, 0.001 / 0.11};
+    const LamLoad load = {
+        .F = {1.01, shears[i], 0, 0, 1.02, 0, 0, 0, 1}, .turgor = 0.02 / 0.11, .cohesion = 0.001 / 0.11};
     LamResponse response;
 
     PetscCall(LamDatabaseQuery(database, &load, i % 2 ? 0.01 : PETSC_INFINITY, &response));

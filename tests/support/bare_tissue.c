@@ -50,7 +50,7 @@ static void BareAssemble(LamRVE rve, const LamLoad *load)
     PetscBool valid;
 
     LamGatherDisplacements(rve, load->F, rve->y, e, u);
-    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, NULL, (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++)
       rve->residual[2 * rve->mesh.node_class[nodes[i / 2]] + i % 2] += element.f[i];
@@ -101,12 +101,12 @@ static void BareStress(LamRVE rve, const LamLoad *load, PetscReal P[9])
     PetscBool valid;
 
     LamGatherDisplacements(rve, load->F, rve->y, e, u);
-    LamElementStretch33(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
+    LamElementStretch33(&rve->geometry[e], rve->law[0], &rve->micro.wall, NULL, (const PetscReal(*)[2])u, load->F[8],
                         &rve->stress[e], &force33, fx, &ff);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++) force33 -= fx[i] * BareMoved(rve, e, i);
     P[8] += force33 / rve->mesh.V0;
     if (!rve->mesh.has_shift[e]) continue;
-    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, (const PetscReal(*)[2])u, load->F[8],
+    LamElementEvaluate(&rve->geometry[e], rve->law[0], &rve->micro.wall, NULL, (const PetscReal(*)[2])u, load->F[8],
                        &rve->stress[e], &element, &valid);
     for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; i++)
       for (PetscInt j = 0; j < LAM_ELEMENT_DOFS; j++) element.f[i] -= element.K[i][j] * BareMoved(rve, e, j);

@@ -111,7 +111,7 @@ static PetscInt BlocksRow(const Blocks *b, PetscInt node, PetscInt d)
 
 static void BlocksEvaluate(Blocks *b, PetscInt e, const PetscReal x[][2], LamElementResult *element, PetscBool *valid)
 {
-  LamElementEvaluate(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
+  LamElementEvaluate(&b->geometry[e], b->law, &b->wall_of[e], NULL, (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
                      b->F33[e], &b->stress[e], element, valid);
 }
 
@@ -120,7 +120,7 @@ static void BlocksReleaseThickness(Blocks *b, PetscInt e, const PetscReal x[][2]
 {
   BlocksThickness *t = &b->thickness[e];
 
-  LamElementStretch33(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
+  LamElementStretch33(&b->geometry[e], b->law, &b->wall_of[e], NULL, (const PetscReal(*)[2])BlocksDisplaced(b, e, x).u,
                       b->F33[e], &b->stress[e], &t->force, t->fx, &t->ff);
   for (PetscInt i = 0; i < LAM_ELEMENT_DOFS; ++i) {
     element->f[i] -= t->fx[i] * t->force / t->ff;

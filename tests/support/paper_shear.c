@@ -162,11 +162,11 @@ static PetscErrorCode AddElementErrors(const ShearState *state, uint64_t *seed, 
   PetscCall(LamWallLawGet(LAM_WALL_FIBRE_MOONEY_RIVLIN, &law));
   PetscCall(NewShearElement(state, seed, &element));
   scale = ExactElement(&element, state, f, exact[0], exact[1]);
-  LamElementEvaluate(&element.geometry, law, &state->wall,
+  LamElementEvaluate(&element.geometry, law, &state->wall, NULL,
                      (const double(*)[2])Displaced((const double(*)[2])element.X, (const double(*)[2])element.x).u, 1.0,
                      &stress, &result, &valid);
   PetscCheck(valid, PETSC_COMM_SELF, PETSC_ERR_PLIB, "shear turned an element inside out");
-  LamElementFields(&element.geometry, law, &state->wall,
+  LamElementFields(&element.geometry, law, &state->wall, NULL,
                    (const double(*)[2])Displaced((const double(*)[2])element.X, (const double(*)[2])element.x).u, 1.0,
                    computed[0], computed[1]);
   for (int i = 0; i < LAM_ELEMENT_DOFS; i++) errors->force = fmax(errors->force, fabs(result.f[i] - f[i]) / scale);

@@ -127,7 +127,8 @@ static PetscReal TornWalls(Torn *torn)
     BlocksGather(b, e, x);
     for (PetscInt a = 0; a < LAM_ELEMENT_NODES; ++a)
       for (PetscInt d = 0; d < 2; ++d) x[a][d] -= b->X[b->elements[e][a]][d];
-    LamElementEnergy(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])x, b->F33[e], &energy, &valid);
+    LamElementEnergy(&b->geometry[e], b->law, &b->wall_of[e], NULL, (const PetscReal(*)[2])x, b->F33[e], &energy,
+                     &valid);
     if (!valid || !LamElementSetConsistentStress(&b->geometry[e], b->law, &b->wall_of[e], (const PetscReal(*)[2])x,
                                                  b->F33[e], &b->stress[e]))
       return PETSC_INFINITY;

@@ -171,7 +171,7 @@ static inline LamDatabase Make(PetscInt cells0, PetscInt cells1)
 
 static inline LamLoad Load(PetscReal F11, PetscReal F12, PetscReal F21, PetscReal F22, PetscReal turgor)
 {
-  return (LamLoad){{F11, F12, 0, F21, F22, 0, 0, 0, 1}, turgor, 0};
+  return (LamLoad){.F = {F11, F12, 0, F21, F22, 0, 0, 0, 1}, .turgor = turgor};
 }
 
 static inline void AddExact(LamDatabase db, LamLoad load)
@@ -239,6 +239,6 @@ static inline void TurnRight(const PetscReal in[9], PetscReal c, PetscReal s, Pe
   }                                                                                                                    \
   static void name##_on(LamDatabase db)
 
-static const LamLoad probe = {{1.06, 0.06, 0, 0.01, 1.02, 0, 0, 0, 1}, 0.15, 0};
+static const LamLoad probe = {.F = {1.06, 0.06, 0, 0.01, 1.02, 0, 0, 0, 1}, .turgor = 0.15};
 
 #endif

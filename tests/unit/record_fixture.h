@@ -53,7 +53,7 @@ static inline LamScene Scene(void)
 /* Responses with a different number in every member. */
 static inline LamResponse Response(PetscInt seed)
 {
-  const LamLoad load = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
+  const LamLoad load = {.F = {1, 0.1, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.1};
   PetscReal next = 1.0 / 3 + seed;
   LamResponse r;
 

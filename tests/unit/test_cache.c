@@ -122,7 +122,7 @@ static void TearDown(Fixture *fixture)
 
 static void SetLoad(Fixture *fixture, PetscInt p, PetscReal stretch)
 {
-  fixture->loads[p] = (LamLoad){{1 + stretch, 0.3 * stretch, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
+  fixture->loads[p] = (LamLoad){.F = {1 + stretch, 0.3 * stretch, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.1};
   fixture->points[p] = p;
 }
 

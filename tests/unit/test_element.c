@@ -62,7 +62,7 @@ static LamElementResult Evaluate(Element *element)
   LamElementResult result;
   PetscBool valid;
 
-  LamElementEvaluate(&element->geometry, element->law, &wall, (const double(*)[2])Displacements(element).u,
+  LamElementEvaluate(&element->geometry, element->law, &wall, NULL, (const double(*)[2])Displacements(element).u,
                      element->F33, &element->stress, &result, &valid);
   assert_true(valid);
   return result;
@@ -73,8 +73,8 @@ static double Energy(const Element *element)
   double energy = 0.0;
   PetscBool valid;
 
-  LamElementEnergy(&element->geometry, element->law, &wall, (const double(*)[2])Displacements(element).u, element->F33,
-                   &energy, &valid);
+  LamElementEnergy(&element->geometry, element->law, &wall, NULL, (const double(*)[2])Displacements(element).u,
+                   element->F33, &energy, &valid);
   assert_true(valid);
   return energy;
 }
@@ -224,8 +224,8 @@ TEST(Stretch33DerivativesFollowFromEnergy)
   double force[3], fx[18], ff, scratch;
 
   (void)Evaluate(&element);
-  LamElementStretch33(&element.geometry, element.law, &wall, (const double(*)[2])Displacements(&element).u, element.F33,
-                      &element.stress, &force[0], fx, &ff);
+  LamElementStretch33(&element.geometry, element.law, &wall, NULL, (const double(*)[2])Displacements(&element).u,
+                      element.F33, &element.stress, &force[0], fx, &ff);
   assert_near(force[0], Difference(&element, 18, -1), 1e-8);
   for (int i = 0; i < 18; i++) assert_near(fx[i], Difference(&element, 18, i), 1e-7);
   for (int k = 1; k < 3; k++) {
@@ -234,7 +234,7 @@ TEST(Stretch33DerivativesFollowFromEnergy)
     moved = element;
     moved.F33 += k == 1 ? 1e-5 : -1e-5;
     (void)Evaluate(&moved);
-    LamElementStretch33(&moved.geometry, moved.law, &wall, (const double(*)[2])Displacements(&moved).u, moved.F33,
+    LamElementStretch33(&moved.geometry, moved.law, &wall, NULL, (const double(*)[2])Displacements(&moved).u, moved.F33,
                         &moved.stress, &force[k], column, &scratch);
   }
   assert_near(ff, (force[1] - force[2]) / 2e-5, 1e-6 * ff);
@@ -285,8 +285,8 @@ TEST(LinearDilatationIsProjectedOntoItself)
   double energy = 0.0, expected = 0.0;
   PetscBool valid;
 
-  LamElementEnergy(&element.geometry, element.law, &fluid, (const double(*)[2])Displacements(&element).u, 1.0, &energy,
-                   &valid);
+  LamElementEnergy(&element.geometry, element.law, &fluid, NULL, (const double(*)[2])Displacements(&element).u, 1.0,
+                   &energy, &valid);
   assert_true(valid);
   for (int g = 0; g < LAM_GAUSS; g++) {
     double xi, eta, weight, N[9], dN[9][2], X1 = 0.0;
@@ -355,7 +355,7 @@ TEST(InsideOutElementIsInvalid)
 
   NewElement(&element, &(uint64_t){18});
   MoveAffinely(&element, mirror);
-  LamElementEvaluate(&element.geometry, element.law, &wall, (const double(*)[2])Displacements(&element).u, 1.0,
+  LamElementEvaluate(&element.geometry, element.law, &wall, NULL, (const double(*)[2])Displacements(&element).u, 1.0,
                      &element.stress, &result, &valid);
   assert_false(valid);
   assert_false(LamElementIsValid(&element.geometry, (const double(*)[2])Displacements(&element).u, 1.0));
@@ -370,8 +370,8 @@ TEST(FieldsOfAffineStretchAreExact)
 
   NewElement(&element, &(uint64_t){19});
   MoveAffinely(&element, F);
-  LamElementFields(&element.geometry, element.law, &wall, (const double(*)[2])Displacements(&element).u, 1.0, stretch,
-                   stress);
+  LamElementFields(&element.geometry, element.law, &wall, NULL, (const double(*)[2])Displacements(&element).u, 1.0,
+                   stretch, stress);
   (void)Homogeneous(&element, F, P);
   s11 = (P[0] * F[0] + P[1] * F[1]) / J;
   s12 = (P[0] * F[2] + P[1] * F[3]) / J;
@@ -398,10 +398,10 @@ TEST(OverflowIsInvalid)
   MoveAffinely(&element, F);
   const NodeVectors u = Displacements(&element);
 
-  LamElementEnergy(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0, &energy, &valid);
+  LamElementEnergy(&element.geometry, element.law, &steep, NULL, (const double(*)[2])u.u, 1.0, &energy, &valid);
   assert_false(valid);
-  LamElementEvaluate(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0, &element.stress, &result,
-                     &valid);
+  LamElementEvaluate(&element.geometry, element.law, &steep, NULL, (const double(*)[2])u.u, 1.0, &element.stress,
+                     &result, &valid);
   assert_false(valid);
   assert_false(LamElementSetConsistentStress(&element.geometry, element.law, &steep, (const double(*)[2])u.u, 1.0,
                                              &element.stress));

@@ -127,12 +127,10 @@ MOSAIC_TEST(turgor_is_in_the_units_of_the_body)
 TEST(the_angle_turns_the_stiff_direction)
 {
   const PetscReal stretch = 1.1, angle = points[3].angle, c = cos(angle), s = sin(angle);
-  const LamLoad own = {{stretch, 0, 0, 0, 1, 0, 0, 0, 1}, 0, 0};
+  const LamLoad own = {.F = {stretch, 0, 0, 0, 1, 0, 0, 0, 1}};
   /* the same stretch along the stiff direction where it now lies, F = R U R^T, so that F Q = R U */
-  const LamLoad turned = {{1 + (stretch - 1) * c * c, (stretch - 1) * c * s, 0, (stretch - 1) * c * s,
-                           1 + (stretch - 1) * s * s, 0, 0, 0, 1},
-                          0,
-                          0};
+  const LamLoad turned = {.F = {1 + (stretch - 1) * c * c, (stretch - 1) * c * s, 0, (stretch - 1) * c * s,
+                                1 + (stretch - 1) * s * s, 0, 0, 0, 1}};
   LamResponse plain;
   PetscInt number = 0;
   Fixture fixture;
@@ -167,7 +165,7 @@ MOSAIC_TEST(each_tissue_is_asked_once_and_told_of_the_end)
 
 MOSAIC_TEST(a_term_without_answer_is_named)
 {
-  const LamLoad load = {{1, 0.5, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
+  const LamLoad load = {.F = {1, 0.5, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.1};
   const PetscInt blended = 2;
   LamResponse response;
 

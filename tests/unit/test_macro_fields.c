@@ -67,7 +67,7 @@ MACRO_TEST(MeansAreByVolume)
 /* Faces are held closed by p + g; the family that is pressed least decides. Bonded tissue has no such measure. */
 TEST(UnloadingIsOfTheLeastPressedFaces)
 {
-  const LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 0.3, 0.1};
+  const LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.3, .cohesion = 0.1};
   PetscReal field[LAM_POINT_FIELD_COUNT];
   LamResponse response;
 

@@ -11,7 +11,7 @@ static void Set(PetscReal vector[2], PetscReal x, PetscReal y)
 /* P of the material at F = diag(a, b, 1). */
 static void Exact(const Fixture *fixture, PetscReal a, PetscReal b, LamResponse *exact)
 {
-  const LamLoad load = {{a, 0, 0, 0, b, 0, 0, 0, 1}, 0, 0};
+  const LamLoad load = {.F = {a, 0, 0, 0, b, 0, 0, 0, 1}};
 
   CHECK(LamResponseInit(&load, exact));
   SyntheticEvaluate(fixture->material, &load, exact);

@@ -67,7 +67,7 @@ MACRO_TEST(RimNodesAreOnTheCircle)
 /* Distorted triangles and quadrilaterals of two regions: homogeneous deformation is exact, as in a box. */
 MACRO_TEST(GmshIsAsGoodAsABox)
 {
-  const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0, 0};
+  const LamLoad load = {.F = {1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}};
   const char(*groups)[LAM_NAME_LENGTH];
   PetscInt group_count;
   LamResponse exact;

@@ -98,7 +98,7 @@ MERGE_TEST(states_of_a_cache_get_new_keys_and_come_once)
 
   for (int i = 0; i < 3; i++) {
     r[i] = Response(6 * (i + 1));
-    r[i].load = (LamLoad){{1, 0.1 * i, 0, 0, 1, 0, 0, 0, 1}, 0.1, 0};
+    r[i].load = (LamLoad){.F = {1, 0.1 * i, 0, 0, 1, 0, 0, 0, 1}, .turgor = 0.1};
   }
   WriteRecords(0, 2, keys, r);
   WriteRecords(1, 2, keys, r + 1);

@@ -64,7 +64,7 @@ static LamDatabase MakeContacts(void)
   return db;
 }
 
-static const LamLoad contact_probe = {{1.06, 0.06, 0, 0.01, 1.02, 0, 0, 0, 1}, 0.15, 0.2};
+static const LamLoad contact_probe = {.F = {1.06, 0.06, 0, 0.01, 1.02, 0, 0, 0, 1}, .turgor = 0.15, .cohesion = 0.2};
 
 TEST(turgor_and_cohesion_derivatives_belong_to_the_answered_energy)
 {

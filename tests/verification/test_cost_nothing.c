@@ -146,6 +146,22 @@ TEST(ListedCellsThatAreAlikeAreNoOtherProblem)
   }
 }
 
+/* Without a past and at once walls with memory are as others. */
+TEST(MemoryWithoutAPastChangesNoDigit)
+{
+  const LamLoad load = PlaneLoad(1.02, 0.1, 0, 1, 0.1);
+  LamMicrostructure micro = DefaultTissue();
+  Solved a = Solve(&micro, &load), b;
+
+  micro.relaxation = (LamRelaxation){.terms = 1, .share = {0.5}, .time = {1}};
+  b = Solve(&micro, &load);
+  AssertSameProblem(&a, &b);
+  assert_null(a.state->past);
+  assert_int_equal(a.state->pairs, 0);
+  Destroy(&a);
+  Destroy(&b);
+}
+
 /* Room for one pressure in each lumen, and only where it is asked for. */
 TEST(OnlySealableLumensHaveUnknowns)
 {

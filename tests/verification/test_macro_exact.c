@@ -5,7 +5,7 @@
    of the side. */
 MACRO_TEST(HomogeneousDeformationIsExact)
 {
-  const LamLoad load = {{1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, 0.1, 0};
+  const LamLoad load = {.F = {1.2, 0, 0, 0, 0.9, 0, 0, 0, 1}, .turgor = 0.1};
   LamResponse exact;
 
   FixtureBiaxial(fixture, 0.2, -0.1, 2);
@@ -29,7 +29,7 @@ MACRO_TEST(HomogeneousDeformationIsExact)
 /* Error of the work against the stored energy, after `steps` steps. */
 static PetscReal WorkError(PetscInt steps)
 {
-  const LamLoad load = {{1.3, 0, 0, 0, 1.1, 0, 0, 0, 1}, 0, 0};
+  const LamLoad load = {.F = {1.3, 0, 0, 0, 1.1, 0, 0, 0, 1}};
   FIXTURE fixture;
   LamResponse exact;
   PetscReal work;

@@ -9,7 +9,7 @@
 
 TEST_GROUP(.petsc = 1);
 
-static const LamLoad load = {{1.08, 0.06, 0, -0.03, 1.01, 0, 0, 0, 1}, 0.3, 0};
+static const LamLoad load = {.F = {1.08, 0.06, 0, -0.03, 1.01, 0, 0, 0, 1}, .turgor = 0.3};
 
 /* Four irregular cells, turned by an angle, and their responder. */
 typedef struct {
