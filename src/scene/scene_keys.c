@@ -16,10 +16,25 @@ static const LamKey last_keys[] = {
 };
 static LAM_KEY_TABLE(last, last_keys);
 
-static const LamKeyTable *const tables[] = {
-    &first,          &LamCellKeys,     &LamWallKeys,   &LamVariationKeys, &LamInterfaceKeys, &LamLamellaKeys,
-    &LamTissueKeys,  &LamStrengthKeys, &LamLoadKeys,   &LamSampleKeys,    &LamMeshKeys,      &LamBoundaryKeys,
-    &LamProgramKeys, &LamResponseKeys, &LamRegionKeys, &LamMapKeys,       &LamProcessKeys,   &last};
+static const LamKeyTable *const tables[] = {&first,
+                                            &LamCellKeys,
+                                            &LamWallKeys,
+                                            &LamVariationKeys,
+                                            &LamInterfaceKeys,
+                                            &LamLamellaKeys,
+                                            &LamTissueKeys,
+                                            &LamStrengthKeys,
+                                            &LamLoadKeys,
+                                            &LamSampleKeys,
+                                            &LamMeshKeys,
+                                            &LamBoundaryKeys,
+                                            &LamProgramKeys,
+                                            &LamResponseKeys,
+                                            &LamRegionKeys,
+                                            &LamMapKeys,
+                                            &LamProcessKeys,
+                                            &LamTransportKeys,
+                                            &last};
 
 const LamKey *LamKeyAt(PetscInt i)
 {
