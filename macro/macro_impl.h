@@ -580,6 +580,8 @@ PetscErrorCode LamMacroFlowReject(LamMacro macro);
 PetscErrorCode LamMacroFlowReduce(LamMacro macro, Vec force, PetscBool *ok);
 /* Norm of their residual, relative to the terms that it is the difference of. */
 PetscErrorCode LamMacroFlowResidual(LamMacro macro, PetscReal *residual);
+/* Balances the water of the converged body to rounding, by the potentials alone. */
+PetscErrorCode LamMacroFlowClose(LamMacro macro);
 /* Finds the change of the potentials as displacements change by du from the last evaluation; adds the change of the
    water that it makes to an element's lumens [modes]; makes it. */
 PetscErrorCode LamMacroFlowFollow(LamMacro macro, Vec du);

@@ -392,8 +392,8 @@ static PetscErrorCode Eliminate(LamMacro macro, const LamMacroElement *element, 
 
 /* ---- the equations of the body ---- */
 
-/* Of the elements on this rank; `entries` are set from the first on. */
-static PetscErrorCode AddElements(LamMacro macro, Vec psi, Vec balance, PetscReal sums[2])
+/* Of the elements on this rank; eliminates: G' and D' instead of G and D, and `entries`, from the first on. */
+static PetscErrorCode AddElements(LamMacro macro, PetscBool eliminates, Vec psi, Vec balance, PetscReal sums[2])
 {
   LamMacroFlow *flow = macro->flow;
   PetscInt at = 0;
@@ -414,7 +414,7 @@ static PetscErrorCode AddElements(LamMacro macro, Vec psi, Vec balance, PetscRea
     PetscCall(DMPlexVecGetClosure(flow->dm, NULL, flow->held, cell, NULL, &held));
     HoldRows(e->n, held, e->balance, e->own, e->flow, macro->seal->modes, &sums[0]);
     PetscCall(DMPlexVecRestoreClosure(flow->dm, NULL, flow->held, cell, NULL, &held));
-    PetscCall(Eliminate(macro, element, e, &flow->entries[0][at], &flow->entries[1][at]));
+    if (eliminates) PetscCall(Eliminate(macro, element, e, &flow->entries[0][at], &flow->entries[1][at]));
     at += element->kind->nodes * macro->dim * e->n;
     PetscCall(DMPlexVecSetClosure(flow->dm, NULL, balance, cell, e->balance, ADD_VALUES));
     PetscCall(DMPlexMatSetClosure(flow->dm, NULL, NULL, flow->own, cell, e->own, ADD_VALUES));
@@ -494,8 +494,8 @@ static PetscErrorCode AddFacets(LamMacro macro, Vec psi, Vec balance, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* G', D', B, C' and the inflow at the present state. */
-static PetscErrorCode Assemble(LamMacro macro)
+/* G', D', B, C' and the inflow at the present state; without `eliminates` G, D and the inflow. */
+static PetscErrorCode Assemble(LamMacro macro, PetscBool eliminates)
 {
   LamMacroFlow *flow = macro->flow;
   PetscReal sums[2] = {0, 0}; /* inflow, magnitude */
@@ -507,12 +507,14 @@ static PetscErrorCode Assemble(LamMacro macro)
   PetscCall(DMGlobalToLocal(flow->dm, flow->psi, INSERT_VALUES, psi));
   PetscCall(VecZeroEntries(balance));
   PetscCall(MatZeroEntries(flow->own));
-  PetscCall(AddElements(macro, psi, balance, sums));
+  PetscCall(AddElements(macro, eliminates, psi, balance, sums));
   PetscCall(AddFacets(macro, psi, balance, &sums[0]));
   PetscCall(MatAssemblyBegin(flow->own, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(flow->own, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetValuesCOO(flow->to_force, flow->entries[0], INSERT_VALUES));
-  PetscCall(MatSetValuesCOO(flow->from_u, flow->entries[1], INSERT_VALUES));
+  if (eliminates) {
+    PetscCall(MatSetValuesCOO(flow->to_force, flow->entries[0], INSERT_VALUES));
+    PetscCall(MatSetValuesCOO(flow->from_u, flow->entries[1], INSERT_VALUES));
+  }
   PetscCall(VecZeroEntries(flow->balance));
   PetscCall(DMLocalToGlobal(flow->dm, balance, ADD_VALUES, flow->balance));
   PetscCall(DMRestoreLocalVector(flow->dm, &balance));
@@ -531,7 +533,7 @@ PetscErrorCode LamMacroFlowReduce(LamMacro macro, Vec force, PetscBool *ok)
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
   if (!LamMacroFlows(macro)) PetscFunctionReturn(0);
-  PetscCall(Assemble(macro));
+  PetscCall(Assemble(macro, PETSC_TRUE));
   PetscCall(KSPSetOperators(flow->own_solver, flow->own, flow->own));
   PetscCall(KSPSolve(flow->own_solver, flow->balance, flow->step));
   PetscCall(KSPGetConvergedReason(flow->own_solver, &reason));
@@ -551,6 +553,21 @@ PetscErrorCode LamMacroFlowResidual(LamMacro macro, PetscReal *residual)
   if (!LamMacroFlows(macro) || macro->flow->magnitude == 0) PetscFunctionReturn(0);
   PetscCall(VecNorm(macro->flow->balance, NORM_2, residual));
   *residual /= macro->flow->magnitude;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroFlowClose(LamMacro macro)
+{
+  LamMacroFlow *flow = macro->flow;
+
+  PetscFunctionBeginUser;
+  if (!LamMacroFlows(macro)) PetscFunctionReturn(0);
+  PetscCall(Assemble(macro, PETSC_FALSE));
+  PetscCall(KSPSetOperators(flow->own_solver, flow->own, flow->own));
+  PetscCall(KSPSolve(flow->own_solver, flow->balance, flow->step));
+  PetscCall(VecScale(flow->step, -1));
+  PetscCall(LamMacroFlowMove(macro));
+  PetscCall(Assemble(macro, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 

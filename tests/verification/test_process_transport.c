@@ -117,4 +117,161 @@ TEST(turgor_diffuses_where_cells_are_in_equilibrium_with_their_walls)
   assert_true(s.largest < 0.005);
 }
 
+#define SLOW_MEMBRANES                                                                                                 \
+  "  water: {permeability: 1e-8 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+
+/* Water goes 0.7 mm along the walls before a cell has taken it up. */
+TEST(cells_far_from_equilibrium_with_their_walls_take_water_up_at_the_rate_of_their_membranes)
+{
+  const Series s = Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE SLOW_MEMBRANES
+                               "  transport: {apoplast: 1e-10 m^2/s/MPa, " EXPOSED "}\n"));
+
+  assert_int_equal(s.states, 10);
+  assert_true(s.largest < 0.005);
+}
+
+/* The membrane at the surface is large against cell to cell. */
+TEST(water_diffuses_from_cell_to_cell_without_an_apoplast)
+{
+  const Series s = Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
+                               "  water: {permeability: 1e-4 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+                               "  transport: {cell_to_cell: 1e-10 m^2/s/MPa, " EXPOSED "}\n"));
+
+  assert_int_equal(s.states, 10);
+  assert_true(s.largest < 0.005);
+}
+
+TEST(both_paths_carry_together_what_they_carry_alone)
+{
+  const Series s = Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
+                               "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+                               "  transport: {apoplast: 4e-11 m^2/s/MPa, cell_to_cell: 6e-11 m^2/s/MPa, " EXPOSED "}\n"));
+
+  assert_int_equal(s.states, 10);
+  assert_true(s.largest < 0.005);
+}
+
+/* ---- limits ---- */
+
+/* Turgor and water of two runs at all their states. */
+static void AssertSame(const Told *a, const Told *b, PetscReal tolerance)
+{
+  assert_int_equal(a->count, b->count);
+  for (PetscInt k = 0; k < a->count; k++) {
+    const LamBodyState *one = &a->bodies[k], *other = &b->bodies[k];
+
+    assert_near(one->water, other->water, tolerance);
+    assert_near(one->turgor_min, other->turgor_min, tolerance);
+    assert_near(one->turgor_max, other->turgor_max, tolerance);
+    assert_near(one->step.turgor_mean, other->step.turgor_mean, tolerance);
+  }
+}
+
+/* Not uniform: sheared between grips, one of which is free; with plasmolysis. */
+#define SHEARED                                                                                                        \
+  "macro:\n"                                                                                                           \
+  "  mesh: {box: [10 mm, 10 mm], elements: [2, 2]}\n"                                                                  \
+  "  boundary:\n"                                                                                                      \
+  "    - {on: bottom, displacement: [0 mm, 0 mm]}\n"                                                                   \
+  "    - {on: top, grip: [2 mm, free]}\n"                                                                              \
+  "process:\n"                                                                                                         \
+  "  duration: 2 h\n"                                                                                                  \
+  "  program: [{for: 1 h, load: 1}]\n"                                                                                 \
+  "  water: {permeability: 1e-7 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+#define BATHS "  surroundings: [{time: 0 h, outside: 0.45 MPa}, {time: 1 h, outside: 0.8 MPa}]\n"
+#define ALL_SIDES "surface: [{on: left}, {on: right}, {on: bottom}, {on: top}]"
+
+TEST(an_apoplast_without_resistance_is_the_bath)
+{
+  TOLD direct = FollowBodyToEnd(SHEARED BATHS, 1e-5);
+  TOLD infinite = FollowBodyToEnd(SHEARED BATHS "  transport: {apoplast: infinite, " ALL_SIDES "}\n", 1e-5);
+  TOLD large = FollowBodyToEnd(SHEARED BATHS "  transport: {apoplast: 1e-2 m^2/s/MPa, " ALL_SIDES "}\n", 1e-5);
+
+  AssertSame(&direct, &infinite, 0);
+  AssertSame(&direct, &large, 3e-5);
+  assert_true(isnan(LastBody(&infinite)->water_balance));
+  assert_near(LastBody(&large)->water_balance, 0, 1e-10);
+}
+
+TEST(a_plasmolysed_body_keeps_its_balance_and_follows_boyle_and_van_t_hoff)
+{
+  TOLD body = FollowBodyToEnd(SHEARED "  surroundings:\n"
+                                      "    - {time: 0 h, outside: 0.45 MPa}\n"
+                                      "    - {time: 0 h, outside: 0.8 MPa}\n"
+                                      "  transport: {apoplast: 1e-7 m^2/s/MPa, cell_to_cell: 1e-8 m^2/s/MPa, " ALL_SIDES
+                                      "}\n",
+                              1e-5);
+
+  for (PetscInt k = 0; k < body.count; k++) assert_near(body.bodies[k].water_balance, 0, 1e-10);
+  assert_near(LastBody(&body)->plasmolysed, 1, 1e-12);
+  assert_near(LastBody(&body)->water, 0.1 + 0.9 * 0.5 / 0.8, 1e-5);
+}
+
+/* The largest difference of water potential in the body. */
+static void SpreadOfPotential(Told *told)
+{
+  PetscReal least = PETSC_INFINITY, most = -PETSC_INFINITY;
+  PetscInt points;
+
+  assert_int_equal(LamMacroGetPointCount(told->macro, &points), 0);
+  for (PetscInt p = 0; p < points; p++) {
+    LamMacroPoint point;
+
+    assert_int_equal(LamMacroGetPoint(told->macro, p, &point), 0);
+    least = fmin(least, point.field[LAM_POINT_POTENTIAL]);
+    most = fmax(most, point.field[LAM_POINT_POTENTIAL]);
+  }
+  *(PetscReal *)told->seen = most - least;
+}
+
+TEST(sealed_sides_keep_the_water_of_a_body_in_which_potentials_even_out)
+{
+  PetscReal spread = 0;
+  TOLD body;
+
+  ReadScene(SHEARED "  transport: {apoplast: 1e-7 m^2/s/MPa, cell_to_cell: 1e-7 m^2/s/MPa}\n"
+                    "  surroundings: [{time: 0 h, outside: 0.45 MPa}]\n",
+            1e-5, &body);
+  body.look = SpreadOfPotential;
+  body.seen = &spread;
+  RunBody(&body);
+  for (PetscInt k = 0; k < body.count; k++) {
+    assert_near(body.bodies[k].water, 1, 1e-10);
+    assert_near(body.bodies[k].inflow, 0, 1e-12);
+  }
+  assert_true(LastBody(&body)->turgor_max - LastBody(&body)->turgor_min > 1e-2);
+  if (getenv("SHOW")) printf("spread %g\n", spread);
+  assert_true(spread < 1e-4);
+}
+
+TEST(nothing_moves_without_a_path_or_without_membranes)
+{
+  TOLD none = FollowBodyToEnd(SHEARED BATHS "  transport: {" ALL_SIDES "}\n", 1e-5);
+
+  for (PetscInt k = 0; k < none.count; k++) assert_near(none.bodies[k].water, 1, 1e-12);
+}
+
+/* A skin that is the only resistance: the body follows the bath with one time. */
+TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
+{
+  TOLD body;
+
+  ReadScene(SLAB("  duration: 10 h\n  output: 1 h\n" A_LITTLE
+                 "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+                 "  transport: {apoplast: 1e-5 m^2/s/MPa, surface: [{on: right, conductance: 1e-7 m/s/MPa}]}\n"),
+            1e-7, &body);
+  RunBody(&body);
+  const PetscReal g =
+      body.scene->process.transport.surface[0].conductance * body.scene->scales.length / body.scene->scales.macro_length;
+  const PetscReal rate = g * Modulus(&body);
+  const PetscReal all = LastBody(&body)->water - 1;
+
+  for (PetscInt k = 0; k < body.count; k++) {
+    const PetscReal end = all / (1 - exp(-rate * LastBody(&body)->time));
+
+    assert_near((body.bodies[k].water - 1) / end, 1 - exp(-rate * body.bodies[k].time), 0.003);
+    assert_near(body.bodies[k].water_balance, 0, 1e-10);
+  }
+}
+
 TEST_GROUP(.petsc = 1);
