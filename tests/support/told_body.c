@@ -66,6 +66,7 @@ void RunBody(Told *told)
   told->macro = macro;
   assert_int_equal(LamMacroSetScene(macro, told->scene), 0);
   assert_int_equal(LamBodyCreate(told->scene, macro, &body), 0);
+  told->body = body;
   assert_int_equal(LamMacroSetUp(macro), 0);
   assert_int_equal(LamMacroGetPointCount(macro, &points), 0);
   MakeMaterial(points, told);

@@ -25,7 +25,8 @@ typedef struct Told_s {
   char message[LAM_PROCESS_MESSAGE];
   LamProcessCounts counts;
   PetscInt count;
-  LamMacro macro;                /* while a body is followed */
+  LamBody body;                  /* while it is followed */
+  LamMacro macro;                /* likewise */
   void (*look)(struct Told_s *); /* at each of its states, if it is set; `seen` is for it */
   void *seen;
   union {

@@ -2,6 +2,8 @@
  */
 #include "support/test.h"
 #include "support/told_body.h"
+#include "macro_impl.h"
+#include "body_impl.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -117,8 +119,7 @@ TEST(turgor_diffuses_where_cells_are_in_equilibrium_with_their_walls)
   assert_true(s.largest < 0.005);
 }
 
-#define SLOW_MEMBRANES                                                                                                 \
-  "  water: {permeability: 1e-8 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+#define SLOW_MEMBRANES "  water: {permeability: 1e-8 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
 
 /* Water goes 0.7 mm along the walls before a cell has taken it up. */
 TEST(cells_far_from_equilibrium_with_their_walls_take_water_up_at_the_rate_of_their_membranes)
@@ -143,9 +144,10 @@ TEST(water_diffuses_from_cell_to_cell_without_an_apoplast)
 
 TEST(both_paths_carry_together_what_they_carry_alone)
 {
-  const Series s = Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
-                               "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
-                               "  transport: {apoplast: 4e-11 m^2/s/MPa, cell_to_cell: 6e-11 m^2/s/MPa, " EXPOSED "}\n"));
+  const Series s =
+      Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
+                  "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+                  "  transport: {apoplast: 4e-11 m^2/s/MPa, cell_to_cell: 6e-11 m^2/s/MPa, " EXPOSED "}\n"));
 
   assert_int_equal(s.states, 10);
   assert_true(s.largest < 0.005);
@@ -195,12 +197,12 @@ TEST(an_apoplast_without_resistance_is_the_bath)
 
 TEST(a_plasmolysed_body_keeps_its_balance_and_follows_boyle_and_van_t_hoff)
 {
-  TOLD body = FollowBodyToEnd(SHEARED "  surroundings:\n"
-                                      "    - {time: 0 h, outside: 0.45 MPa}\n"
-                                      "    - {time: 0 h, outside: 0.8 MPa}\n"
-                                      "  transport: {apoplast: 1e-7 m^2/s/MPa, cell_to_cell: 1e-8 m^2/s/MPa, " ALL_SIDES
-                                      "}\n",
-                              1e-5);
+  TOLD body =
+      FollowBodyToEnd(SHEARED "  surroundings:\n"
+                              "    - {time: 0 h, outside: 0.45 MPa}\n"
+                              "    - {time: 0 h, outside: 0.8 MPa}\n"
+                              "  transport: {apoplast: 1e-7 m^2/s/MPa, cell_to_cell: 1e-8 m^2/s/MPa, " ALL_SIDES "}\n",
+                      1e-5);
 
   for (PetscInt k = 0; k < body.count; k++) assert_near(body.bodies[k].water_balance, 0, 1e-10);
   assert_near(LastBody(&body)->plasmolysed, 1, 1e-12);
@@ -261,8 +263,8 @@ TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
                  "  transport: {apoplast: 1e-5 m^2/s/MPa, surface: [{on: right, conductance: 1e-7 m/s/MPa}]}\n"),
             1e-7, &body);
   RunBody(&body);
-  const PetscReal g =
-      body.scene->process.transport.surface[0].conductance * body.scene->scales.length / body.scene->scales.macro_length;
+  const PetscReal g = body.scene->process.transport.surface[0].conductance * body.scene->scales.length /
+                      body.scene->scales.macro_length;
   const PetscReal rate = g * Modulus(&body);
   const PetscReal all = LastBody(&body)->water - 1;
 
@@ -272,6 +274,119 @@ TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
     assert_near((body.bodies[k].water - 1) / end, 1 - exp(-rate * body.bodies[k].time), 0.003);
     assert_near(body.bodies[k].water_balance, 0, 1e-10);
   }
+}
+
+/* ---- the tangent ---- */
+
+/* Unbalanced force at a displacement, with the pressures and potentials that belong to it. */
+static void ForceAt(LamMacro macro, Vec u, Vec force)
+{
+  PetscReal scale, water, flow;
+  PetscBool ok;
+
+  for (int it = 0; it < 12; it++) {
+    CHECK(LamMacroEvaluate(macro, u, &ok));
+    assert_true(ok);
+    CHECK(LamMacroAssembleForce(macro, force, &scale));
+    CHECK(LamMacroFlowReduce(macro, force, &ok));
+    assert_true(ok);
+    CHECK(LamMacroSealedResidual(macro, &water));
+    CHECK(LamMacroFlowResidual(macro, &flow));
+    if (water < 1e-14 && flow < 1e-15) return;
+    CHECK(LamMacroMovePressures(macro, u));
+  }
+  fail_msg("residuals %g and %g", water, flow);
+}
+
+/* y = tangent d, with pressures and potentials eliminated, at the state evaluated last; row . d is that of `weight`. */
+static void Tangent(LamMacro macro, Vec d, Vec weight, Vec y, PetscReal *along)
+{
+  LamMacroFlow *flow = macro->flow;
+  Vec t, s, row;
+
+  CHECK(VecDuplicate(flow->psi, &t));
+  CHECK(VecDuplicate(flow->psi, &s));
+  CHECK(VecDuplicate(d, &row));
+  CHECK(LamMacroAssembleTangent(macro, macro->tangent));
+  CHECK(MatMult(flow->from_u, d, t));
+  CHECK(KSPSolve(flow->own_solver, t, s));
+  CHECK(VecScale(s, -1));
+  CHECK(MatMult(macro->tangent, d, y));
+  CHECK(MatMultAdd(flow->to_force, s, y, y));
+  CHECK(MatMultTranspose(macro->tangent, weight, row));
+  CHECK(LamMacroFlowTranspose(macro, weight, row));
+  CHECK(VecDot(row, d, along));
+  CHECK(VecDestroy(&row));
+  CHECK(VecDestroy(&s));
+  CHECK(VecDestroy(&t));
+}
+
+/* At the last state, in an implicit step of time. */
+static void Differentiate(Told *told)
+{
+  LamMacro macro = told->macro;
+  LamBody body = told->body;
+  const PetscReal h = 1e-6;
+  PetscInt n;
+  PetscReal *rates, *start, along, expected, norm, error;
+  Vec d, u, force[2], y, weight;
+  PetscScalar *values;
+
+  if (LastBody(told)->time < told->scene->process.duration) return;
+  n = body->sizes.points;
+  CHECK(PetscMalloc2(n, &rates, n, &start));
+  Vec *const vectors[] = {&d, &u, &force[0], &force[1], &y, &weight};
+  for (int k = 0; k < 6; k++) CHECK(VecDuplicate(macro->u, vectors[k]));
+  for (PetscInt p = 0; p < n; p++) {
+    rates[p] = 1e-4 * sin(3.0 * (double)p);
+    start[p] = body->water[p];
+  }
+  body->mode = LAM_WATER_PASSES;
+  body->cj = *(PetscReal *)told->seen;
+  body->start = start;
+  body->slope = rates;
+  CHECK(VecSetRandom(weight, NULL));
+  CHECK(VecGetArray(d, &values));
+  for (PetscInt k = 0; k < body->sizes.displacements; k++) values[k] = 0.01 * cos(7.0 * (double)k);
+  CHECK(VecRestoreArray(d, &values));
+  for (int side = 0; side < 2; side++) {
+    CHECK(VecWAXPY(u, side ? h : -h, d, macro->u));
+    ForceAt(macro, u, force[side]);
+  }
+  CHECK(VecAXPY(force[1], -1, force[0]));
+  CHECK(VecScale(force[1], 0.5 / h));
+  ForceAt(macro, macro->u, force[0]);
+  Tangent(macro, d, weight, y, &along);
+  CHECK(VecDot(weight, y, &expected));
+  assert_near(along, expected, 1e-10 * fabs(expected));
+  CHECK(VecNorm(y, NORM_2, &norm));
+  CHECK(VecAXPY(y, -1, force[1]));
+  CHECK(VecNorm(y, NORM_2, &error));
+  if (getenv("SHOW")) printf("tangent: error %.1e of %.1e\n", error, norm);
+  assert_true(error < 1e-7 * norm);
+  body->mode = LamBodyAtOnce(body);
+  for (int k = 0; k < 6; k++) CHECK(VecDestroy(vectors[k]));
+  CHECK(PetscFree2(rates, start));
+}
+
+static void AssertTangent(const char text[], PetscReal coefficient)
+{
+  TOLD told;
+
+  ReadScene(text, 1e-4, &told);
+  told.look = Differentiate;
+  told.seen = &coefficient;
+  RunBody(&told);
+  if (told.reason != LAM_PROCESS_DONE) fail_msg("%s", told.message);
+}
+
+TEST(the_tangent_of_a_step_of_time_is_the_derivative_of_its_forces)
+{
+  const char scene[] = SHEARED "  surroundings: [{time: 0 h, outside: 0.45 MPa}, {time: 1 h, outside: 0.48 MPa}]\n"
+                               "  transport: {apoplast: 1e-8 m^2/s/MPa, cell_to_cell: 1e-9 m^2/s/MPa, surface: "
+                               "[{on: left}, {on: right, conductance: 1e-8 m/s/MPa}]}\n";
+
+  for (PetscReal coefficient = 1e-5; coefficient < 2; coefficient *= 1e2) AssertTangent(scene, coefficient);
 }
 
 TEST_GROUP(.petsc = 1);
