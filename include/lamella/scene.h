@@ -493,6 +493,8 @@ typedef struct {
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one is a load quantity */
 } LamScene;
 
+/* True if water moves through the body: it has a path, in the apoplast by membranes that let it pass. */
+LAM_EXPORT PetscBool LamTransportHasPotentials(const LamScene *scene);
 /* True if the law of any wall in the scene has the parameter. */
 LAM_EXPORT PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
 /* True if the property belongs to a wall law that no wall of the scene has. */
