@@ -276,6 +276,26 @@ TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
   }
 }
 
+/* Air of a relative humidity of 0.995 is as a bath of 0.68 MPa. */
+TEST(a_block_dries_from_its_skin_inwards_and_ends_in_equilibrium_with_the_air)
+{
+  TOLD body = FollowBodyToEnd(SHEARED "  surroundings: [{time: 0 h, humidity: 0.995}]\n"
+                                      "  transport: {apoplast: 5e-8 m^2/s/MPa, surface: [{on: right, conductance: 1e-5 "
+                                      "m/s/MPa}]}\n",
+                              1e-5);
+  const PetscReal MPa = body.scene->scales.stress * 1e-6, outside = LastBody(&body)->outside * MPa;
+  const LamBodyState *lost = FindBodyEvent(&body, LAM_EVENT_TURGOR_LOST);
+
+  assert_near(outside, -LAM_GAS_CONSTANT * 293.15 / 18.05e-6 * log(0.995) * 1e-6, 1e-9);
+  assert_non_null(lost);
+  assert_true(lost->place[0] > 0.9 && lost->plasmolysed < 0.2);
+  for (PetscInt k = 1; k < body.count; k++) {
+    assert_true(body.bodies[k].inflow <= body.bodies[k - 1].inflow);
+    assert_near(body.bodies[k].water_balance, 0, 1e-10);
+  }
+  assert_near(LastBody(&body)->water, 0.1 + 0.9 * 0.5 / outside, 0.02);
+}
+
 /* ---- the tangent ---- */
 
 /* Unbalanced force at a displacement, with the pressures and potentials that belong to it. */
