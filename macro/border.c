@@ -164,6 +164,7 @@ PetscErrorCode LamMacroBorderDerivatives(LamMacro macro, Mat tangent)
     LamMacroBorder *border = &macro->borders[b];
     if (border->entry >= 0) { /* a grip's column is constant, and so is the row of the traction factor */
       PetscCall(MatMultTranspose(tangent, border->weight, border->row));
+      PetscCall(LamMacroFlowTranspose(macro, border->weight, border->row));
       continue;
     }
     PetscCall(VecCopy(macro->external, border->column));
@@ -243,10 +244,7 @@ PetscErrorCode LamMacroBorderSolver(LamMacro macro, KSP ksp)
   if (!needed) PetscFunctionReturn(0);
   PetscCall(KSPCreate(macro->comm, &macro->solver));
   PetscCall(KSPSetOptionsPrefix(macro->solver, "macro_"));
-  PetscCall(KSPSetType(macro->solver, KSPPREONLY));
-  PetscCall(KSPGetPC(macro->solver, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(LamMacroDirectSolver(macro, macro->solver));
   PetscCall(KSPSetFromOptions(macro->solver));
   PetscCall(KSPSetOptionsPrefix(ksp, "macro_bordered_"));
   PetscCall(KSPGetPC(ksp, &pc));

@@ -31,14 +31,35 @@ static PetscErrorCode CheckName(LamMacro macro, const char key[], const LamScene
   PetscFunctionReturn(0);
 }
 
+/* Water passes the outside of the body alone. */
+static PetscErrorCode CheckOutside(LamMacro macro, const LamSurface *surface)
+{
+  const PetscInt set = LamMacroFindSet(macro, surface->on);
+  PetscInt facets = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < macro->facet_count; f++) facets += macro->facets[f].sets >> set & 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &facets, 1, MPIU_INT, MPI_SUM, macro->comm));
+  LamMacroRequire(facets > 0, macro, &surface->place,
+                  "process.transport.surface: on: %s: is a point or lies inside the body; name a piece of its boundary",
+                  surface->on);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroBoundaryCheck(LamMacro macro)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
+  const LamTransportSpec *transport = &macro->scene->process.transport;
 
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < spec->boundary_count; b++)
     PetscCall(CheckName(macro, "macro.boundary", &spec->boundary[b].place, spec->boundary[b].on));
   if (spec->control.on[0]) PetscCall(CheckName(macro, "macro.control", &spec->control.place, spec->control.on));
+  for (PetscInt k = 0; k < transport->surface_count; k++) {
+    const LamSurface *surface = &transport->surface[k];
+    PetscCall(CheckName(macro, "process.transport.surface", &surface->place, surface->on));
+    PetscCall(CheckOutside(macro, surface));
+  }
   PetscFunctionReturn(0);
 }
 

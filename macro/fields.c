@@ -10,7 +10,8 @@ const char *const LamPointFieldNames[] = {LAM_POINT_FIELDS(LAM_NAME_ENTRY) NULL}
 PetscBool LamPointFieldIsStress(LamPointField field)
 {
   return (PetscBool)(field == LAM_POINT_TURGOR || field == LAM_POINT_WALL || field == LAM_POINT_NORMAL ||
-                     field == LAM_POINT_SHEAR || field == LAM_POINT_ELLIPTICITY);
+                     field == LAM_POINT_SHEAR || field == LAM_POINT_ELLIPTICITY || field == LAM_POINT_POTENTIAL ||
+                     field == LAM_POINT_APOPLAST);
 }
 
 PetscBool LamPointFieldIsEnergy(LamPointField field)
@@ -74,6 +75,7 @@ void LamMacroKeepFields(const LamResponse *response, PetscReal field[LAM_POINT_F
   field[LAM_POINT_ERROR] = interpolated ? response->error_estimate : 0;
   field[LAM_POINT_INTERPOLATED] = interpolated;
   field[LAM_POINT_DOUBTFUL] = !response->indicators_trusted;
+  field[LAM_POINT_POTENTIAL] = field[LAM_POINT_APOPLAST] = NAN; /* of converged states (transport.c) */
   field[LAM_POINT_BROKEN] = response->broken_fraction;
   field[LAM_POINT_BROKEN_FACE] = MostBroken(response);
   field[LAM_POINT_STORED] = response->stored;

@@ -18,6 +18,7 @@ PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes)
   *sizes = (LamMacroSizes){.points = macro->point_count, .elements = macro->element_count};
   PetscCall(VecGetLocalSize(macro->u, &sizes->displacements));
   sizes->modes = macro->seal ? macro->seal->modes : 0;
+  if (macro->flow) PetscCall(VecGetLocalSize(macro->flow->psi, &sizes->potentials));
   PetscFunctionReturn(0);
 }
 
@@ -48,7 +49,7 @@ PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char message[LAM_MES
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[])
+PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[], PetscReal potentials[])
 {
   const PetscScalar *values;
   PetscInt n;
@@ -59,11 +60,12 @@ PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressur
   PetscCall(PetscArraycpy(u, values, n));
   PetscCall(VecRestoreArrayRead(macro->trial, &values));
   if (macro->seal) PetscCall(PetscArraycpy(pressures, macro->seal->change, macro->seal->modes * macro->element_count));
+  PetscCall(LamMacroFlowGet(macro, potentials));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                               const PetscReal pressures[], PetscBool *ok)
+                               const PetscReal pressures[], const PetscReal potentials[], PetscBool *ok)
 {
   PetscScalar *values;
   PetscInt n;
@@ -81,6 +83,7 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
     PetscCall(PetscArraycpy(macro->seal->change, pressures, macro->seal->modes * macro->element_count));
     PetscCall(VecCopy(macro->trial, macro->seal->u)); /* the pressures belong to it */
   }
+  PetscCall(LamMacroFlowStart(macro, instant, potentials));
   macro->prediction = 0;
   macro->thorough = PETSC_TRUE; /* otherwise slow changes in time would not move the body at all */
   PetscCall(LamMacroIterate(macro, ok));
@@ -100,6 +103,7 @@ PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p
 
   PetscFunctionBeginUser;
   *p = (LamMacroPoint){.load = &macro->loads[point], .field = now->field, .percolating = now->percolating};
+  p->potential = macro->flow ? &macro->flow->at[macro->flow->spec.count * point] : NULL;
   p->lumen = macro->seal ? macro->seal->now[point].lumen : NAN;
   for (int i = 0; i < 2; i++) p->place[i] = macro->place[macro->dim * point + i];
   PetscFunctionReturn(0);

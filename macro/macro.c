@@ -78,6 +78,7 @@ PetscErrorCode LamMacroSetUp(LamMacro macro)
   PetscCall(CreatePoints(macro));
   PetscCall(CreateUnknowns(macro));
   PetscCall(LamMacroSealCreate(macro));
+  PetscCall(LamMacroFlowCreate(macro));
   PetscCall(LamMacroNewtonCreate(macro));
   PetscCall(LamMacroHoldBoundaries(macro)); /* rejects an insufficiently constrained body before anything is solved */
   PetscFunctionReturn(0);
@@ -168,6 +169,7 @@ PetscErrorCode LamMacroDestroy(LamMacro *macro)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(LamMacroFlowDestroy(m));
   PetscCall(LamMacroSealDestroy(m));
   PetscCall(MatDestroy(&m->tangent));
   ListVectors(m, vectors);

@@ -202,9 +202,9 @@ PetscErrorCode LamMacroCombineRows(LamMacro macro, Vec force)
   PetscFunctionReturn(0);
 }
 
-/* New entries [2][n] of a node's rows; both have the same columns. */
-static PetscErrorCode NewEntries(Mat tangent, PetscInt start, const LamNodeRows *rows, PetscInt n, PetscInt columns[],
-                                 PetscScalar entries[])
+/* New entries [2][n] of a node's rows; both have the same columns. own: they belong to displacements. */
+static PetscErrorCode NewEntries(Mat tangent, PetscInt start, const LamNodeRows *rows, PetscBool own, PetscInt n,
+                                 PetscInt columns[], PetscScalar entries[])
 {
   const PetscInt row = start + rows->local;
 
@@ -222,14 +222,14 @@ static PetscErrorCode NewEntries(Mat tangent, PetscInt start, const LamNodeRows 
     }
     PetscCall(MatRestoreRow(tangent, row + j, &count, &where, &old));
   }
-  for (PetscInt k = 0; k < n; k++) {
+  for (PetscInt k = 0; k < n && own; k++) {
     const PetscInt j = columns[k] - row;
     for (PetscInt i = 0; i < 2 && j >= 0 && j < 2; i++) entries[i * n + k] += rows->add[2 * i + j];
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent)
+static PetscErrorCode CombineMatrix(LamMacro macro, Mat tangent, PetscBool own)
 {
   PetscInt start, total = 0, *sizes, *columns, at = 0;
   PetscScalar *entries;
@@ -245,7 +245,7 @@ PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent)
   }
   PetscCall(PetscMalloc2(total, &columns, 2 * total, &entries));
   for (PetscInt k = 0; k < macro->row_count; k++) { /* all are read before any is written */
-    PetscCall(NewEntries(tangent, start, &macro->rows[k], sizes[k], &columns[at], &entries[2 * at]));
+    PetscCall(NewEntries(tangent, start, &macro->rows[k], own, sizes[k], &columns[at], &entries[2 * at]));
     at += sizes[k];
   }
   at = 0;
@@ -258,5 +258,19 @@ PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent)
   PetscCall(MatAssemblyEnd(tangent, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscFree2(columns, entries));
   PetscCall(PetscFree(sizes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroConstrainTangent(LamMacro macro, Mat tangent)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CombineMatrix(macro, tangent, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroConstrainColumns(LamMacro macro, Mat columns)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CombineMatrix(macro, columns, PETSC_FALSE));
   PetscFunctionReturn(0);
 }

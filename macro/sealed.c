@@ -27,14 +27,6 @@
 
 #include <petscblaslapack.h> /* requires that PETSc's own headers come first */
 
-/* The equations of an element's pressures. The columns of `coupling` belong to the element's displacements, the last
-   one to R. */
-typedef struct {
-  PetscInt modes, dofs;
-  PetscReal coupling[(LAM_MACRO_DOFS + 1) * LAM_MACRO_MODES]; /* [dofs + 1][modes] C, R */
-  PetscReal solved[(LAM_MACRO_DOFS + 1) * LAM_MACRO_MODES];   /* K^-1 of it */
-} Condensation;
-
 /* ---- creation ---- */
 
 PetscBool LamMacroHasPressures(LamMacro macro)
@@ -106,26 +98,26 @@ PetscReal LamMacroTurgorChange(LamMacro macro, const LamMacroElement *element, P
   return change;
 }
 
-/* Prescribed lumen of a point at a turgor `change` above that at which it was sealed, and its slope. */
-static void FindWater(LamMacro macro, PetscInt point, PetscReal change, PetscReal *water, PetscReal *slope)
+void LamMacroFindWater(LamMacro macro, PetscInt point, LamWater *water)
 {
   const PetscReal sealed = macro->seal->water[point];
+  const PetscReal change = LamMacroTurgorChange(macro, &macro->elements[macro->point_element[point]], point);
 
   if (macro->water_law) {
-    macro->water_law(macro->water_ctx, point, macro->turgor * macro->turgor_share[point] + change, water, slope);
+    macro->water_law(macro->water_ctx, point, macro->turgor * macro->turgor_share[point] + change,
+                     macro->flow ? &macro->flow->at[macro->flow->spec.count * point] : NULL, water);
     return;
   }
-  *water = sealed * (1 - change / macro->scene->water_bulk_modulus);
-  *slope = -sealed / macro->scene->water_bulk_modulus;
+  water->water = sealed * (1 - change / macro->scene->water_bulk_modulus);
+  water->slope = -sealed / macro->scene->water_bulk_modulus;
 }
 
 PetscReal LamMacroWaterSlope(LamMacro macro, PetscInt point)
 {
-  PetscReal water, slope;
+  LamWater water;
 
-  FindWater(macro, point, LamMacroTurgorChange(macro, &macro->elements[macro->point_element[point]], point), &water,
-            &slope);
-  return slope;
+  LamMacroFindWater(macro, point, &water);
+  return water.slope;
 }
 
 /* R [modes] of the last evaluation. */
@@ -134,10 +126,10 @@ static void AddResidual(LamMacro macro, const LamMacroElement *element, PetscRea
   const LamMacroSeal *seal = macro->seal;
 
   for (PetscInt point = element->first; point < element->first + element->kind->points; point++) {
-    PetscReal wanted, slope;
-    FindWater(macro, point, LamMacroTurgorChange(macro, element, point), &wanted, &slope);
+    LamWater wanted;
+    LamMacroFindWater(macro, point, &wanted);
     for (PetscInt a = 0; a < seal->modes; a++)
-      R[a] += macro->weight[point] * seal->shape[seal->modes * point + a] * (wanted - seal->now[point].lumen);
+      R[a] += macro->weight[point] * seal->shape[seal->modes * point + a] * (wanted.water - seal->now[point].lumen);
   }
 }
 
@@ -149,10 +141,10 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
   const PetscReal *dN = LamMacroGradient(macro, element, q), *shape = &seal->shape[modes * point],
                   w = macro->weight[point];
   const LamSealedPoint *response = &seal->now[point];
-  PetscReal water, slope;
+  LamWater water;
 
-  FindWater(macro, point, LamMacroTurgorChange(macro, element, point), &water, &slope);
-  const PetscReal curvature = response->curvature + slope;
+  LamMacroFindWater(macro, point, &water);
+  const PetscReal curvature = response->curvature + water.slope;
   for (PetscInt b = 0; b < element->kind->nodes; b++) {
     for (PetscInt i = 0; i < dim; i++) {
       PetscReal force = 0; /* from the pressure */
@@ -165,24 +157,32 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
   }
 }
 
-static PetscErrorCode CreateCondensation(LamMacro macro, const LamMacroElement *element, Condensation *c)
+PetscErrorCode LamMacroCondensationCreate(LamMacro macro, const LamMacroElement *element, LamCondensation *c)
 {
-  PetscReal K[LAM_MACRO_MODES * LAM_MACRO_MODES] = {0};
-  PetscBLASInt n, columns, pivots[LAM_MACRO_MODES], info;
+  PetscBLASInt n, columns, info;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(c, sizeof(*c)));
   c->modes = macro->seal->modes;
   c->dofs = element->kind->nodes * macro->dim;
-  for (PetscInt q = 0; q < element->kind->points; q++) AddPoint(macro, element, q, c->coupling, K);
+  for (PetscInt q = 0; q < element->kind->points; q++) AddPoint(macro, element, q, c->coupling, c->K);
   AddResidual(macro, element, &c->coupling[c->dofs * c->modes]);
   PetscCall(PetscArraycpy(c->solved, c->coupling, (c->dofs + 1) * c->modes));
   PetscCall(PetscBLASIntCast(c->modes, &n));
   PetscCall(PetscBLASIntCast(c->dofs + 1, &columns));
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &columns, K, &n, pivots, c->solved, &n, &info));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &columns, c->K, &n, c->pivots, c->solved, &n, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
              "the compliance of the water in element %d is singular (LAPACK gesv: %d)", (int)element->number,
              (int)info);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMacroCondensationSolve(LamCondensation *c, PetscInt columns, PetscReal x[])
+{
+  PetscBLASInt n = (PetscBLASInt)c->modes, count = (PetscBLASInt)columns, info;
+
+  PetscFunctionBeginUser;
+  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &count, c->K, &n, c->pivots, x, &n, &info));
   PetscFunctionReturn(0);
 }
 
@@ -196,11 +196,11 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
 
 PetscErrorCode LamMacroCondense(LamMacro macro, const LamMacroElement *element, PetscScalar fe[], PetscScalar Ke[])
 {
-  Condensation c;
+  LamCondensation c;
 
   PetscFunctionBeginUser;
   if (!macro->seal || !macro->seal->closed) PetscFunctionReturn(0);
-  PetscCall(CreateCondensation(macro, element, &c));
+  PetscCall(LamMacroCondensationCreate(macro, element, &c));
   for (PetscInt k = 0; k < c.dofs; k++) {
     const PetscReal *column = &c.coupling[k * c.modes];
     if (fe) fe[k] -= Dot(c.modes, column, &c.solved[c.dofs * c.modes]);
@@ -218,21 +218,28 @@ PetscErrorCode LamMacroMovePressures(LamMacro macro, Vec u)
 
   PetscFunctionBeginUser;
   PetscCall(VecAYPX(seal->u, -1, u)); /* the step */
+  PetscCall(LamMacroFlowFollow(macro, seal->u));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, seal->u, INSERT_VALUES, local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     PetscScalar *step = NULL;
-    Condensation c;
-    PetscCall(CreateCondensation(macro, &macro->elements[e], &c));
+    PetscReal moved[LAM_MACRO_MODES] = {0}; /* by the potentials */
+    LamCondensation c;
+    PetscCall(LamMacroCondensationCreate(macro, &macro->elements[e], &c));
+    if (macro->flow) {
+      PetscCall(LamMacroFlowLumens(macro, e, moved));
+      PetscCall(LamMacroCondensationSolve(&c, 1, moved));
+    }
     PetscCall(DMPlexVecGetClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &step));
     for (PetscInt a = 0; a < c.modes; a++) {
       PetscReal *change = &seal->change[c.modes * e + a];
-      *change -= c.solved[c.dofs * c.modes + a];
+      *change -= c.solved[c.dofs * c.modes + a] + moved[a];
       for (PetscInt k = 0; k < c.dofs; k++) *change -= c.solved[k * c.modes + a] * PetscRealPart(step[k]);
     }
     PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &step));
   }
   PetscCall(DMRestoreLocalVector(macro->dm, &local));
+  PetscCall(LamMacroFlowMove(macro));
   PetscCall(VecCopy(u, seal->u));
   PetscFunctionReturn(0);
 }
@@ -312,6 +319,7 @@ PetscErrorCode LamMacroRejectPressures(LamMacro macro)
   PetscCall(PetscArraycpy(seal->change, seal->last_change, seal->modes * macro->element_count));
   PetscCall(PetscArraycpy(seal->now, seal->accepted, macro->point_count));
   PetscCall(VecCopy(macro->u, seal->u));
+  PetscCall(LamMacroFlowReject(macro));
   PetscFunctionReturn(0);
 }
 

@@ -29,6 +29,9 @@ static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for th
    pressures. It allows for the jumps of interpolated responses at boundaries between cells of a table and between
    neighbouring records. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
+/* Of the equations of the water that moves through the body, over the sum of the sizes of their terms, of which the flows
+   are differences: a thousandth of the other tolerance. The rest is closed at the end. */
+static const PetscReal FLOW_TOLERANCE = 1e-12;
 /* MOST_RELEASES: further iterations where nodes leave obstacles one by one (rows.c), chosen: about three for each. */
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, MOST_RELEASES = 25, PATIENCE = 6 };
 
@@ -52,6 +55,8 @@ static PetscErrorCode FormResidual(SNES snes, Vec u, Vec residual, void *ctx)
   }
   PetscCall(LamMacroAssembleForce(macro, macro->force, &scale));
   macro->force_scale = PetscMax(macro->force_scale, scale);
+  PetscCall(LamMacroFlowReduce(macro, macro->force, &ok));
+  if (!ok) PetscCall(SNESSetFunctionDomainError(snes));
   PetscCall(LamMacroExternalForce(macro, u, macro->external));
   PetscCall(VecWAXPY(residual, -LamMacroTractionFactor(macro), macro->external, macro->force));
   PetscCall(LamMacroBorderEquations(macro, u, residual));
@@ -69,6 +74,7 @@ static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, v
   PetscCall(LamMacroAddTractionTangent(macro, preconditioner));
   PetscCall(LamMacroBorderDerivatives(macro, preconditioner));
   PetscCall(LamMacroConstrainTangent(macro, preconditioner));
+  if (LamMacroFlows(macro)) PetscCall(LamMacroConstrainColumns(macro, macro->flow->to_force));
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +85,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   const PetscBool lenient = (PetscBool)(macro->lenient && it >= PATIENCE);
   const PetscReal tolerance = lenient ? LENIENT_TOLERANCE : RELATIVE_TOLERANCE,
                   scale = PetscMax(macro->force_scale, lenient ? macro->force_floor : 0);
-  PetscReal sealed;
+  PetscReal sealed, flow;
 
   PetscFunctionBeginUser;
   *reason = SNES_CONVERGED_ITERATING;
@@ -101,6 +107,8 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   }
   PetscCall(LamMacroSealedResidual(macro, &sealed));
   if (sealed > tolerance) *reason = SNES_CONVERGED_ITERATING;
+  PetscCall(LamMacroFlowResidual(macro, &flow));
+  if (flow > FLOW_TOLERANCE) *reason = SNES_CONVERGED_ITERATING;
   PetscFunctionReturn(0);
 }
 
@@ -130,7 +138,6 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
 {
   SNESLineSearch search;
   KSP ksp;
-  PC pc;
 
   PetscFunctionBeginUser;
   PetscCall(SNESCreate(macro->comm, &macro->snes));
@@ -145,10 +152,7 @@ PetscErrorCode LamMacroNewtonCreate(LamMacro macro)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(search, Predict, macro));
   PetscCall(SNESGetKSP(macro->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(LamMacroDirectSolver(macro, ksp));
   PetscCall(LamMacroBorderSolver(macro, ksp));
   PetscCall(SNESSetFromOptions(macro->snes));
   PetscFunctionReturn(0);
@@ -161,6 +165,7 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   PetscCall(LamMacroAddWork(macro));
   PetscCall(VecCopy(macro->trial, macro->u));
   PetscCall(VecCopy(macro->force, macro->force_accepted));
+  PetscCall(LamMacroFlowAccept(macro));
   PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
   PetscCall(LamMacroAcceptPressures(macro));
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
@@ -229,6 +234,7 @@ PetscErrorCode LamMacroIterate(LamMacro macro, PetscBool *converged)
   macro->step.newton_iterations += iterations;
   PetscCall(KeepHistory(macro));
   *converged = reason > 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (*converged) PetscCall(LamMacroFlowClose(macro));
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) {
     PetscCall(PetscStrncpy(macro->trouble, "the tangent of the body is singular", sizeof(macro->trouble)));
   } else if (reason < 0 && !macro->trouble[0]) {

@@ -35,6 +35,7 @@ PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *bod
   PetscCall(LamProcessCreate(scene, &(*body)->process));
   PetscCall(CheckTurgor(scene));
   if (scene->process.has_water) PetscCall(LamMacroSetWaterLaw(macro, LamBodyWaterLaw, *body));
+  PetscCall(LamBodyTransportCreate(*body));
   PetscFunctionReturn(0);
 }
 
@@ -42,22 +43,22 @@ PetscErrorCode LamBodyCreate(const LamScene *scene, LamMacro macro, LamBody *bod
 static PetscErrorCode Allocate(LamBody body)
 {
   LamMacroSizes *sizes = &body->sizes;
-  PetscReal volume = 0;
+  PetscReal *volume = &body->volume;
 
   PetscFunctionBeginUser;
   if (body->u) PetscFunctionReturn(0);
   PetscCall(LamMacroGetSizes(body->macro, sizes));
   PetscCall(PetscCalloc5(sizes->points, &body->share, sizes->points, &body->membrane, sizes->points, &body->cells,
                          sizes->points, &body->opening, sizes->points, &body->drive));
-  PetscCall(PetscCalloc3(sizes->displacements + 1, &body->u, sizes->elements * sizes->modes, &body->pressures,
-                         sizes->points, &body->water));
+  PetscCall(PetscCalloc4(sizes->displacements + 1, &body->u, sizes->elements * sizes->modes, &body->pressures,
+                         sizes->potentials, &body->potentials, sizes->points, &body->water));
   PetscCall(LamMacroGetVolumes(body->macro, body->share));
   for (PetscInt p = 0; p < sizes->points; p++) {
-    volume += body->share[p];
+    *volume += body->share[p];
     body->membrane[p] = body->process->cells.membrane;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPIU_REAL, MPIU_SUM, body->comm));
-  for (PetscInt p = 0; p < sizes->points; p++) body->share[p] /= volume;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volume, 1, MPIU_REAL, MPIU_SUM, body->comm));
+  for (PetscInt p = 0; p < sizes->points; p++) body->share[p] /= *volume;
   PetscFunctionReturn(0);
 }
 
@@ -97,7 +98,7 @@ PetscErrorCode LamBodyDestroy(LamBody *body)
   PetscFunctionBeginUser;
   if (!*body) PetscFunctionReturn(0);
   PetscCall(PetscFree5((*body)->share, (*body)->membrane, (*body)->cells, (*body)->opening, (*body)->drive));
-  PetscCall(PetscFree3((*body)->u, (*body)->pressures, (*body)->water));
+  PetscCall(PetscFree4((*body)->u, (*body)->pressures, (*body)->potentials, (*body)->water));
   PetscCall(LamProcessDestroy(&(*body)->process));
   PetscCall(PetscFree(*body));
   PetscFunctionReturn(0);
@@ -269,7 +270,7 @@ static PetscErrorCode Start(LamBody body, PetscBool *ok, char message[LAM_PROCES
   PetscCall(PetscStrncpy(message, why, LAM_PROCESS_MESSAGE));
   PetscCall(LamMacroStopped(body->macro, &process->stopped));
   if (!*ok) PetscFunctionReturn(0);
-  PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
+  PetscCall(LamMacroGetState(body->macro, body->u, body->pressures, body->potentials));
   process->pressure = PetscMax(1e-3, process->scene->turgor);
   if (process->spec->has_water) PetscCall(LamBodyWaterCreate(body));
   if (process->spec->has_water && isfinite(process->spec->water.osmotic) && LamBodyAtOnce(body) == LAM_WATER_OSMOSIS)

@@ -84,7 +84,8 @@ PetscErrorCode LamBodyExcess(LamBody body, PetscInt n, const LamEvent events[], 
 /* Sums and extremes over the material points of the present state. */
 static PetscErrorCode Summarise(LamBody body, LamBodyState *state)
 {
-  PetscReal sum[3] = {0}, most[2 + LAM_RATIO_COUNT];
+  const PetscBool moves = (PetscBool)(body->transport.count > 0);
+  PetscReal sum[5] = {0}, most[2 + LAM_RATIO_COUNT];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 2 + LAM_RATIO_COUNT; k++) most[k] = -PETSC_INFINITY;
@@ -100,14 +101,18 @@ static PetscErrorCode Summarise(LamBody body, LamBodyState *state)
     for (int k = 0; k < LAM_RATIO_COUNT; k++) most[2 + k] = PetscMax(most[2 + k], ratio[k]);
     sum[0] += body->share[p] * body->water[p];
     sum[1] += body->share[p] * body->cells[p].water;
+    sum[4] += body->share[p] * (body->water[p] - body->cells[p].water);
     if (point.load->turgor < LamBodyNoTurgor(body)) sum[2] += body->share[p];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, body->comm));
+  sum[3] = body->rank ? 0 : body->inflow;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 5, MPIU_REAL, MPIU_SUM, body->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2 + LAM_RATIO_COUNT, MPIU_REAL, MPIU_MAX, body->comm));
   state->turgor_min = -most[0];
   state->turgor_max = most[1];
   for (int k = 0; k < LAM_RATIO_COUNT; k++) state->ratio[k] = most[2 + k] > -PETSC_INFINITY ? most[2 + k] : NAN;
   state->water = body->process->spec->has_water ? sum[0] / sum[1] : NAN;
+  state->inflow = moves ? sum[3] / sum[1] : NAN;
+  state->water_balance = moves ? (sum[4] - sum[3]) / sum[1] : NAN;
   state->plasmolysed = body->process->spec->has_water ? sum[2] : NAN;
   PetscFunctionReturn(0);
 }

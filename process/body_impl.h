@@ -1,7 +1,7 @@
 /*
   Private parts of a body that changes in time.
 
-    body_water.c      water of the cells: prescribed volume of the lumens as a function of turgor
+    body_water.c      water of the cells: volume of the lumens, and flows, as functions of turgor and water potentials
     body_state.c      properties and equilibrium at a time
     body_events.c     events and their locations, and reports of states
     body_integrate.c  one segment by IDA, with the body's own nonlinear solver
@@ -44,11 +44,20 @@ struct LamBody_s {
   PetscReal turgor_share; /* present prescribed turgor relative to that of the start */
   PetscReal sigma;        /* present reflection coefficient */
   LamDrive *drive;        /* [point] */
+  /* scenes with process.transport; otherwise, and where all cells meet the surroundings, no potentials */
+  LamMacroTransport transport;
+  PetscInt apoplast, cells_path; /* potentials: in the apoplast, from cell to cell; -1: none */
+  PetscBool isolated;            /* no water reaches a cell */
+  PetscReal exchange;            /* conductance between cells and the path from cell to cell, per V0 */
+  PetscReal skin;                /* present conductance of a membrane, macro lengths */
+  PetscReal volume;              /* of the body */
   LamWaterMode mode;
-  PetscReal cj, *start, *slope; /* for LAM_WATER_PASSES: V' = slope + cj (V - start); borrowed */
+  PetscReal cj, *start, *slope;         /* for LAM_WATER_PASSES: V' = slope + cj (V - start); borrowed */
+  PetscReal inflow_start, inflow_slope; /* likewise; on rank 0 */
 
   /* the present state */
-  PetscReal *u, *pressures, *water;
+  PetscReal *u, *pressures, *potentials, *water;
+  PetscReal inflow;    /* water that has come in at the surface, over the body's volume; on rank 0 */
   LamEvaluation now;   /* properties */
   PetscReal evaluated; /* time of the present responses of the macroscale solver; NaN: unknown */
   PetscReal clock;     /* clock at the start of the present state's report */
@@ -59,11 +68,16 @@ struct LamBody_s {
 /* ---- body_water.c ---- */
 PetscErrorCode LamBodyWaterCreate(LamBody body);
 /* LamWaterLaw */
-void LamBodyWaterLaw(void *body, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
-/* Protoplast volume at a nonnegative turgor, and its derivative. */
-PetscReal LamBodyProtoplast(LamBody body, PetscInt point, PetscReal turgor, PetscReal *slope);
-/* dV/dt at a turgor. */
-PetscReal LamBodyFlow(LamBody body, PetscInt point, PetscReal water, PetscReal turgor);
+void LamBodyWaterLaw(void *body, PetscInt point, PetscReal turgor, const PetscReal potential[], LamWater *water);
+/* Protoplast volume at a nonnegative turgor and the potentials there, and its derivative by the turgor. */
+PetscReal LamBodyProtoplast(LamBody body, PetscInt point, PetscReal turgor, const PetscReal potential[],
+                            PetscReal *slope);
+/* dV/dt in the state evaluated last. */
+PetscReal LamBodyFlow(LamBody body, PetscInt point, PetscReal water, const LamMacroPoint *at);
+/* Which potentials the scene needs. Call before LamMacroSetUp. */
+PetscErrorCode LamBodyTransportCreate(LamBody body);
+/* Rate of the inflow in the state evaluated last. */
+PetscErrorCode LamBodyInflowRate(LamBody body, PetscReal *rate);
 /* Sets the drives of the water from the present properties. */
 void LamBodyDrives(LamBody body);
 
@@ -72,6 +86,9 @@ void LamBodyDrives(LamBody body);
  */
 PetscErrorCode LamBodySetTime(LamBody body, PetscReal time, const PetscReal x[], PetscBool *ok);
 LamMacroInstant LamBodyInstant(LamBody body, PetscReal time);
+/* LamMacroBalance with the present surface. */
+PetscErrorCode LamBodyAsk(LamBody body, const LamMacroInstant *instant, const PetscReal u[],
+                          const PetscReal pressures[], const PetscReal potentials[], PetscBool *ok);
 /* Dependence of water on turgor when no time passes. */
 LamWaterMode LamBodyAtOnce(LamBody body);
 /* Computes the water from the turgor of the present state. */

@@ -2,9 +2,12 @@
   One segment of time of a body, integrated by IDA (SUNDIALS).
 
   Unknowns: states of the kinetic laws x, common to all tissue; the water V of each material point; turgor and
-  displacement of the body, (q, u). Equations
+  displacement of the body, (q, u), and where water moves through it the potentials psi and what has flowed in, Q.
+  Equations
 
-    x' = f(x, T),      V' = Lp A (sigma (pi - pi_out) - p),      equilibrium and lumens of the body for (u, q; V, x, t).
+    x' = f(x, T),      V' = Lp A (sigma (pi - pi_out) - p),      equilibrium and lumens of the body for (u, q; V, x, t)
+
+  with psi_out = -sigma pi_out replaced by the potentials there, and Q' the flow at the surface (transport.c).
 
   In an implicit step y' = s + c (y - a), with IDA's s, a, c, the kinetics are solved separately, and V is a function
   of p at each point (body_water.c). The remaining problem is equilibrium of a body whose lumens have volume V(p).
@@ -30,7 +33,7 @@ enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6
 
 /* Positions of the unknowns behind the kinetic states in this rank's y; -1: not an unknown. */
 typedef struct {
-  PetscInt idle, water, pressures, u;
+  PetscInt idle, inflow, water, pressures, potentials, u;
 } Layout;
 
 typedef struct {
@@ -54,14 +57,17 @@ static void LayOut(Integration *in)
   PetscInt *n = &in->base.n;
   Layout *l = &in->layout;
 
-  *l = (Layout){.idle = -1, .water = -1};
+  *l = (Layout){.idle = -1, .inflow = -1, .water = -1};
   if (in->body->rank == 0) l->idle = (*n)++; /* IDA needs one unknown with a rate */
+  if (in->body->rank == 0 && in->body->transport.count) l->inflow = (*n)++;
   if (spec->has_water && isfinite(spec->water.permeability)) {
     l->water = *n;
     *n += sizes->points;
   }
   l->pressures = *n;
   *n += sizes->elements * sizes->modes;
+  l->potentials = *n;
+  *n += sizes->potentials;
   l->u = *n;
   *n += sizes->displacements;
 }
@@ -76,8 +82,10 @@ static PetscErrorCode Pack(const Integration *in, PetscReal y[])
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (in->base.state[k] >= 0) y[in->base.state[k]] = body->process->tissue.x[k];
   if (l->idle >= 0) y[l->idle] = 0;
+  if (l->inflow >= 0) y[l->inflow] = body->inflow;
   if (l->water >= 0) PetscCall(PetscArraycpy(&y[l->water], body->water, sizes->points));
   PetscCall(PetscArraycpy(&y[l->pressures], body->pressures, sizes->elements * sizes->modes));
+  PetscCall(PetscArraycpy(&y[l->potentials], body->potentials, sizes->potentials));
   PetscCall(PetscArraycpy(&y[l->u], body->u, sizes->displacements));
   PetscFunctionReturn(0);
 }
@@ -107,8 +115,10 @@ static PetscErrorCode Unpack(Integration *in, PetscReal time, const PetscReal y[
   tissue->outside = LamRampAt(&segment->outside, elapsed);
   tissue->load = LamRampAt(&segment->load, elapsed);
   body->turgor_share = LamBodyInstant(body, time).turgor;
+  if (l->inflow >= 0) body->inflow = y[l->inflow];
   if (l->water >= 0) PetscCall(PetscArraycpy(body->water, &y[l->water], body->sizes.points));
   PetscCall(PetscArraycpy(body->pressures, &y[l->pressures], body->sizes.elements * body->sizes.modes));
+  PetscCall(PetscArraycpy(body->potentials, &y[l->potentials], body->sizes.potentials));
   PetscCall(PetscArraycpy(body->u, &y[l->u], body->sizes.displacements));
   PetscFunctionReturn(0);
 }
@@ -159,7 +169,8 @@ static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c
 }
 
 /* Correction: the solution of the step minus the prediction. */
-static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[], PetscReal correction[])
+static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[], const PetscReal rates[],
+                                     PetscReal correction[])
 {
   LamBody body = in->body;
   const Layout *l = &in->layout;
@@ -168,7 +179,13 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (in->base.state[k] >= 0) correction[in->base.state[k]] = in->x[k] - predicted[in->base.state[k]];
   if (l->idle >= 0) correction[l->idle] = 0;
-  PetscCall(LamMacroGetState(body->macro, &correction[l->u], &correction[l->pressures]));
+  if (l->inflow >= 0) {
+    PetscReal rate;
+
+    PetscCall(LamBodyInflowRate(body, &rate));
+    correction[l->inflow] = (rate - rates[l->inflow]) / in->c;
+  }
+  PetscCall(LamMacroGetState(body->macro, &correction[l->u], &correction[l->pressures], &correction[l->potentials]));
   for (PetscInt k = l->pressures; k < in->base.n; k++) correction[k] -= predicted[k];
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++) {
     LamMacroPoint point;
@@ -176,7 +193,7 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
 
     PetscCall(LamMacroGetPoint(body->macro, p, &point));
     correction[l->water + p] =
-        LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), &slope) - predicted[l->water + p];
+        LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), point.potential, &slope) - predicted[l->water + p];
   }
   PetscFunctionReturn(0);
 }
@@ -190,6 +207,8 @@ static LamWaterMode SetStep(Integration *in, PetscReal start[], PetscReal rates[
   body->cj = in->c;
   body->start = water < 0 ? NULL : &start[water];
   body->slope = water < 0 ? NULL : &rates[water];
+  body->inflow_start = in->layout.inflow < 0 ? 0 : start[in->layout.inflow];
+  body->inflow_slope = in->layout.inflow < 0 ? 0 : rates[in->layout.inflow];
   return water < 0 ? LAM_WATER_OSMOSIS : LAM_WATER_PASSES;
 }
 
@@ -207,11 +226,11 @@ static PetscErrorCode Balance(Integration *in, PetscReal time, PetscReal y[], Pe
   if (!*ok) PetscFunctionReturn(0);
   body->mode = SetStep(in, y, yp);
   const LamMacroInstant instant = LamBodyInstant(body, time);
-  PetscCall(LamMacroBalance(body->macro, &instant, &y[l->u], &y[l->pressures], ok));
+  PetscCall(LamBodyAsk(body, &instant, &y[l->u], &y[l->pressures], &y[l->potentials], ok));
   PetscCall(LamMacroStopped(body->macro, &process->stopped));
   if (!*ok && again && !process->stopped) {
     PetscCall(LamMacroReject(body->macro));
-    PetscCall(LamMacroBalance(body->macro, &instant, body->u, body->pressures, ok));
+    PetscCall(LamBodyAsk(body, &instant, body->u, body->pressures, body->potentials, ok));
     PetscCall(LamMacroStopped(body->macro, &process->stopped));
   }
   process->counts.questions++;
@@ -240,7 +259,7 @@ static PetscErrorCode SolveStep(Integration *in, PetscReal time, PetscReal c, Pe
   if (!ok) PetscFunctionReturn(0);
   in->c = c;
   PetscCall(Balance(in, time, predicted, rates, PETSC_FALSE, &ok));
-  if (ok) PetscCall(FillCorrection(in, predicted, correction));
+  if (ok) PetscCall(FillCorrection(in, predicted, rates, correction));
   *flag = body->process->stopped ? -1 : ok ? 0 : SUN_NLS_CONV_RECVR;
   PetscFunctionReturn(0);
 }
@@ -357,8 +376,9 @@ static PetscErrorCode StartRates(Integration *in)
     LamMacroPoint point;
 
     PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    yp[in->layout.water + p] = LamBodyFlow(body, p, body->water[p], point.load->turgor);
+    yp[in->layout.water + p] = LamBodyFlow(body, p, body->water[p], &point);
   }
+  if (in->layout.inflow >= 0) PetscCall(LamBodyInflowRate(body, &yp[in->layout.inflow]));
   PetscFunctionReturn(0);
 }
 
@@ -418,24 +438,27 @@ static void Destroy(Integration *in)
 static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
 {
   LamBody body = in->body;
-  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes;
+  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes,
+                 l = body->sizes.potentials;
   N_Vector y = N_VClone(in->base.y), yp = N_VClone(in->base.y);
-  PetscReal *u, *pressures;
+  PetscReal *u, *pressures, *potentials;
   PetscErrorCode ierr = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &u, m, &pressures));
+  PetscCall(PetscMalloc3(n, &u, m, &pressures, l, &potentials));
   PetscCall(PetscArraycpy(u, body->u, n));
   PetscCall(PetscArraycpy(pressures, body->pressures, m));
+  PetscCall(PetscArraycpy(potentials, body->potentials, l));
   *ok = (PetscBool)(IDAGetDky(in->base.ida, time, 0, y) == IDA_SUCCESS &&
                     IDAGetDky(in->base.ida, time, 1, yp) == IDA_SUCCESS);
   if (*ok) ierr = Unpack(in, time, N_VGetArrayPointer(y));
   if (*ok && keeps) {
     PetscCall(PetscArraycpy(body->u, u, n));
     PetscCall(PetscArraycpy(body->pressures, pressures, m));
+    PetscCall(PetscArraycpy(body->potentials, potentials, l));
   }
   if (*ok && !ierr) ierr = LamBodySettle(body, SetStep(in, N_VGetArrayPointer(y), N_VGetArrayPointer(yp)), time, ok);
-  PetscCall(PetscFree2(u, pressures));
+  PetscCall(PetscFree3(u, pressures, potentials));
   N_VDestroy(y);
   N_VDestroy(yp);
   PetscCall(ierr);

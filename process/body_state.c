@@ -51,8 +51,26 @@ PetscErrorCode LamBodyFillWater(LamBody body)
     PetscReal slope;
 
     PetscCall(LamMacroGetPoint(body->macro, p, &point));
-    body->water[p] = LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), &slope);
+    body->water[p] = LamBodyProtoplast(body, p, PetscMax(point.load->turgor, 0), point.potential, &slope);
   }
+  if (body->transport.count && body->mode == LAM_WATER_PASSES) {
+    PetscReal rate;
+
+    PetscCall(LamBodyInflowRate(body, &rate));
+    body->inflow = body->inflow_start + (rate - body->inflow_slope) / body->cj;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamBodyAsk(LamBody body, const LamMacroInstant *instant, const PetscReal u[],
+                          const PetscReal pressures[], const PetscReal potentials[], PetscBool *ok)
+{
+  LamMacroInstant now = *instant;
+
+  PetscFunctionBeginUser;
+  now.outside = -body->sigma * body->now.outside;
+  if (body->cells_path >= 0) now.membrane[body->cells_path] = body->skin;
+  PetscCall(LamMacroBalance(body->macro, &now, u, pressures, potentials, ok));
   PetscFunctionReturn(0);
 }
 
@@ -63,7 +81,7 @@ PetscErrorCode LamBodyBalance(LamBody body, LamWaterMode mode, const LamMacroIns
   PetscFunctionBeginUser;
   body->evaluated = NAN;
   body->mode = mode;
-  PetscCall(LamMacroBalance(body->macro, instant, body->u, body->pressures, ok));
+  PetscCall(LamBodyAsk(body, instant, body->u, body->pressures, body->potentials, ok));
   process->counts.questions++;
   if (!*ok) {
     PetscCall(PetscStrncpy(process->trouble, LamMacroTrouble(body->macro), sizeof(process->trouble)));
@@ -73,7 +91,7 @@ PetscErrorCode LamBodyBalance(LamBody body, LamWaterMode mode, const LamMacroIns
     PetscFunctionReturn(0);
   }
   PetscCall(LamMacroAccept(body->macro));
-  PetscCall(LamMacroGetState(body->macro, body->u, body->pressures));
+  PetscCall(LamMacroGetState(body->macro, body->u, body->pressures, body->potentials));
   PetscCall(LamBodyFillWater(body));
   body->mode = LamBodyAtOnce(body);
   PetscFunctionReturn(0);

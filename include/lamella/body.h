@@ -28,7 +28,10 @@ typedef struct {
   PetscReal factor[LAM_CHANGING_COUNT]; /* relative to the initial value; all tissue follows the same laws */
   PetscReal walls;                      /* C1 + C2 over the initial value */
   PetscReal load;                       /* load parameter */
-  PetscReal water;                  /* volume of all protoplasts over the initial value; NaN without a water balance */
+  PetscReal water;  /* volume of all protoplasts over the initial value; NaN without a water balance */
+  PetscReal inflow; /* water that has come in at the surface, over that of all protoplasts at the start; NaN unless
+                       water moves through the body (process.transport) */
+  PetscReal water_balance;          /* water - 1 - inflow: error of the balance */
   PetscReal turgor_min, turgor_max; /* over the material points */
   PetscReal plasmolysed; /* fraction of the body's volume that has lost turgor; NaN without a water balance */
   PetscReal ratio[LAM_RATIO_COUNT]; /* maximum over the material points */

@@ -140,10 +140,31 @@ LAM_EXPORT PetscErrorCode LamMacroDestroy(LamMacro *macro);
 
 /* ---- a body that changes in time, instead of LamMacroSolve (body.h) ---- */
 
-/* Water volume of the lumens of a material point at a turgor, per V0, and its derivative, which is not positive. */
-typedef void (*LamWaterLaw)(void *ctx, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope);
+/* Fields of water potential at the nodes, between which and the lumens water moves (docs/theory/process.md, Water that
+   moves through a body). Pressures in C1 + C2, lengths in macro lengths, times in s. */
+enum { LAM_MACRO_POTENTIALS = 2 };
+typedef struct {
+  PetscInt count;                               /* at least 1 */
+  PetscReal conductivity[LAM_MACRO_POTENTIALS]; /* per reference lengths */
+  PetscBool
+      has_membrane[LAM_MACRO_POTENTIALS]; /* between it and what is outside; otherwise it is that of the apoplast */
+} LamMacroTransport;
+
+/* Water of a material point, per V0. The members behind `slope` are only for bodies with transport. */
+typedef struct {
+  PetscReal water, slope; /* volume of the lumens, and its derivative by the turgor, which is not positive */
+  PetscReal potential;    /* of the cells */
+  PetscReal by_potential[LAM_MACRO_POTENTIALS]; /* derivatives of the volume by the potentials */
+  PetscReal flow[LAM_MACRO_POTENTIALS];         /* from each potential into the cells, with derivatives */
+  PetscReal flow_turgor[LAM_MACRO_POTENTIALS], flow_potential[LAM_MACRO_POTENTIALS][LAM_MACRO_POTENTIALS];
+  PetscReal magnitude; /* of the terms whose differences are the flows */
+} LamWater;
+/* potential [transport.count]; NULL without transport. */
+typedef void (*LamWaterLaw)(void *ctx, PetscInt point, PetscReal turgor, const PetscReal potential[], LamWater *water);
 /* LamMacroStart raises the turgor; afterwards it follows from the law. Call before LamMacroSetUp. */
 LAM_EXPORT PetscErrorCode LamMacroSetWaterLaw(LamMacro macro, LamWaterLaw law, void *ctx);
+/* Likewise. The surface is that of the scene's process.transport. */
+LAM_EXPORT PetscErrorCode LamMacroSetTransport(LamMacro macro, const LamMacroTransport *transport);
 
 /* Conditions at an instant. */
 typedef struct {
@@ -151,12 +172,16 @@ typedef struct {
   PetscReal turgor;  /* fraction of the points' turgor; 1 if turgor follows from water */
   PetscReal lamella; /* factor of the points' cohesion */
   PetscReal walls;   /* factor of the moduli of their walls */
+  /* with transport */
+  PetscReal outside;                        /* water potential at the surface */
+  PetscReal membrane[LAM_MACRO_POTENTIALS]; /* conductance of the membranes there, in macro lengths; where there are */
 } LamMacroInstant;
 
-/* Sizes on this rank. A state is u [displacements] and pressures [elements][modes]: turgor over that of
-   LamMacroStart, for shape functions about the element's centre, of which the first is 1. */
+/* Sizes on this rank. A state is u [displacements], pressures [elements][modes]: turgor over that of LamMacroStart, for
+   shape functions about the element's centre, of which the first is 1; and potentials [potentials]. */
 typedef struct {
   PetscInt points, elements, displacements, modes; /* modes 0: turgor is prescribed */
+  PetscInt potentials;                             /* 0 without transport */
 } LamMacroSizes;
 LAM_EXPORT PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
 /* Reference volume of each point, [point]. */
@@ -171,11 +196,15 @@ LAM_EXPORT PetscErrorCode LamMacroStart(LamMacro macro, PetscBool *ok, char mess
 /* Solves for the equilibrium under the conditions from an initial guess. *ok: converged; else LamMacroTrouble
    returns the reason. Call LamMacroAccept or LamMacroReject afterwards. */
 LAM_EXPORT PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, const PetscReal u[],
-                                          const PetscReal pressures[], PetscBool *ok);
+                                          const PetscReal pressures[], const PetscReal potentials[], PetscBool *ok);
 LAM_EXPORT PetscErrorCode LamMacroAccept(LamMacro macro); /* the solution becomes the last converged state */
 LAM_EXPORT PetscErrorCode LamMacroReject(LamMacro macro); /* restores the state before LamMacroBalance */
 /* The state of the last LamMacroBalance. */
-LAM_EXPORT PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[]);
+LAM_EXPORT PetscErrorCode LamMacroGetState(LamMacro macro, PetscReal u[], PetscReal pressures[],
+                                           PetscReal potentials[]);
+/* Water that flows in at the surface then, volume (of which lumens are shares of V0) per time, all ranks; NaN without
+   transport. */
+LAM_EXPORT PetscErrorCode LamMacroGetInflow(LamMacro macro, PetscReal *inflow);
 LAM_EXPORT const char *LamMacroTrouble(LamMacro macro);
 LAM_EXPORT PetscErrorCode LamMacroStopped(LamMacro macro,
                                           PetscBool *stopped); /* by LamMacroSetStop; equal on all ranks */
@@ -183,9 +212,10 @@ LAM_EXPORT PetscErrorCode LamMacroStopped(LamMacro macro,
 /* A material point in the state evaluated last. */
 typedef struct {
   const LamLoad *load;
-  const PetscReal *field; /* [LAM_POINT_FIELD_COUNT], below */
-  PetscReal lumen;        /* -dPsi/dp, per V0; NaN if turgor is prescribed */
-  PetscInt percolating;   /* LamResponse.percolating_directions */
+  const PetscReal *field;     /* [LAM_POINT_FIELD_COUNT], below */
+  const PetscReal *potential; /* [transport.count]; NULL without transport */
+  PetscReal lumen;            /* -dPsi/dp, per V0; NaN if turgor is prescribed */
+  PetscInt percolating;       /* LamResponse.percolating_directions */
   PetscReal place[2];
 } LamMacroPoint;
 LAM_EXPORT PetscErrorCode LamMacroGetPoint(LamMacro macro, PetscInt point, LamMacroPoint *p);
@@ -214,6 +244,9 @@ LAM_EXPORT PetscErrorCode LamMacroDescribe(LamMacro macro, PetscInt number, Pets
   X(LAM_POINT_ERROR, "error_estimate")     /* of an interpolated response; 0: solved */                                \
   X(LAM_POINT_INTERPOLATED, "interpolated") /* 1: from a database; 0: solved */                                        \
   X(LAM_POINT_DOUBTFUL, "doubtful")         /* 1: indicators are not trusted; else 0 */                                \
+  X(LAM_POINT_POTENTIAL,                                                                                               \
+    "water_potential") /* of the cells, and of the apoplast; of bodies with transport, else NaN */                     \
+  X(LAM_POINT_APOPLAST, "apoplast_potential")                                                                          \
   /* of law `lamella`, else NaN; LamResponse */                                                                        \
   X(LAM_POINT_BROKEN, "broken_fraction")                                                                               \
   X(LAM_POINT_BROKEN_FACE, "broken_face") /* the largest of broken_by_face */                                          \

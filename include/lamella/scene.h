@@ -415,6 +415,22 @@ typedef struct {
   PetscReal non_osmotic;  /* non-solution fraction of the initial lumen volume */
 } LamWaterSpec;
 
+/* Where water enters or leaves a body. */
+typedef struct {
+  LamScenePlace place;      /* of `on` */
+  char on[LAM_NAME_LENGTH]; /* as that of a LamBoundary */
+  PetscReal conductance;    /* of a skin, (C1 + C2) / apothem, 1/s; infinite: there is none */
+} LamSurface;
+
+/* Transport of water in a body: fluxes per reference area, down gradients of the water potential in the reference. */
+typedef struct {
+  PetscBool given;         /* otherwise each cell exchanges water with the surroundings directly */
+  PetscReal apoplast;      /* conductivity, (C1 + C2) / macro length^2, 1/s; infinite: as if not `given` */
+  PetscReal cell_to_cell;  /* likewise */
+  PetscInt surface_count;  /* sides that are not sealed */
+  LamSurface surface[LAM_MAX_BOUNDARIES];
+} LamTransportSpec;
+
 /* The surroundings at a time: linear between entries, constant outside; two entries at one time are a jump. */
 typedef struct {
   PetscReal time;        /* s */
@@ -440,6 +456,7 @@ typedef struct {
   LamArea area;               /* ... and its P is per this area */
   PetscBool has_water;
   LamWaterSpec water;
+  LamTransportSpec transport;
   LamKinetics kinetics[LAM_CHANGING_COUNT]; /* these own their tables */
   PetscInt surroundings_count;              /* at least 1 */
   LamSurroundings *surroundings;            /* owned */
@@ -489,6 +506,8 @@ typedef struct {
   LamMapAxis map[LAM_MAP_AXIS_COUNT]; /* at most one is a load quantity */
 } LamScene;
 
+/* True if water moves through the body: it has a path, in the apoplast by membranes that let it pass. */
+LAM_EXPORT PetscBool LamTransportHasPotentials(const LamScene *scene);
 /* True if the law of any wall in the scene has the parameter. */
 LAM_EXPORT PetscBool LamSceneHasParameter(const LamScene *scene, PetscInt parameter);
 /* True if the property belongs to a wall law that no wall of the scene has. */
@@ -531,12 +550,13 @@ typedef enum {
   LAM_DIMENSION_PERMEABILITY,
   LAM_DIMENSION_AREAL_ENERGY,
   LAM_DIMENSION_STIFFNESS,
+  LAM_DIMENSION_CONDUCTIVITY,
   LAM_DIMENSION_COUNT
 } LamDimension;
 
 /*
-  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa, J/m2, Pa/m). PETSC_ERR_USER_INPUT, with the
-  reason, if the unit is missing, unknown or of another dimension, or the number is not finite.
+  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa, J/m2, Pa/m, m2/s/Pa). PETSC_ERR_USER_INPUT, with
+  the reason, if the unit is missing, unknown or of another dimension, or the number is not finite.
 */
 LAM_EXPORT PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
 

@@ -182,6 +182,9 @@ static json_t *BodyToJSON(const LamBodyStudy *study, const LamBodyState *state, 
                    LamJSONReal(state->walls), "factors", FactorsToJSON(&study->fe2.scene->process, state->factor),
                    "water", LamJSONReal(state->water), "turgor_min", LamJSONReal(state->turgor_min * MPa), "turgor_max",
                    LamJSONReal(state->turgor_max * MPa), "plasmolysed", LamJSONReal(state->plasmolysed)));
+  if (isfinite(state->inflow))
+    json_object_update_new(o, json_pack("{s:o, s:o}", "inflow", LamJSONReal(state->inflow), "water_balance",
+                                        LamJSONReal(state->water_balance)));
   AddRatios(o, state->ratio, state->event);
   if (state->event == LAM_EVENT_COUNT) return o;
   json_object_update_new(o, json_pack("{s:I, s:I, s:o}", "element", (json_int_t)state->element, "point",

@@ -11,11 +11,15 @@
 #include <string.h>
 #include <udunits2.h>
 
-const char *const LamDimensionNames[] = {
-    "length",          "stress",           "angle", "time", "temperature", "rate", "molar energy", "permeability",
-    "energy per area", "stress per length"};
-const char *const LamDimensionExamples[] = {"75 um",    "0.1 MPa",   "30 deg",       "2 h",     "20 degC",
-                                            "0.1 /day", "60 kJ/mol", "1e-7 m/s/MPa", "1 J/m^2", "1000 MPa/mm"};
+const char *const LamDimensionNames[] = {"length",          "stress",
+                                         "angle",           "time",
+                                         "temperature",     "rate",
+                                         "molar energy",    "permeability",
+                                         "energy per area", "stress per length",
+                                         "conductivity"};
+const char *const LamDimensionExamples[] = {"75 um",   "0.1 MPa",     "30 deg",         "2 h",
+                                            "20 degC", "0.1 /day",    "60 kJ/mol",      "1e-7 m/s/MPa",
+                                            "1 J/m^2", "1000 MPa/mm", "1e-10 m^2/s/MPa"};
 
 enum { BASE_UNITS = 6 };
 static const char *const base_symbols[BASE_UNITS] = {"m", "kg", "s", "rad", "K", "mol"};
@@ -30,6 +34,7 @@ static const int dimension_powers[][BASE_UNITS] = {
     [LAM_DIMENSION_PERMEABILITY] = {2, -1, 1, 0, 0, 0}, /* m/s per Pa */
     [LAM_DIMENSION_AREAL_ENERGY] = {0, 1, -2, 0, 0, 0},
     [LAM_DIMENSION_STIFFNESS] = {-2, 1, -2, 0, 0, 0},
+    [LAM_DIMENSION_CONDUCTIVITY] = {3, -1, 1, 0, 0, 0}, /* m/s per Pa/m */
 };
 
 /* The units database: read at first use (which takes some milliseconds), freed at exit. */

@@ -68,6 +68,8 @@ static PetscErrorCode StoreReal(const LamNode *node, const LamKey *key, const La
     PetscCall(LamSceneScale(node, si, strcmp(key->unit, "mm") ? scales->length : scales->macro_length, number));
   if (key->dimension == LAM_DIMENSION_PERMEABILITY)
     PetscCall(LamSceneScale(node, si * scales->stress, scales->length, number));
+  if (key->dimension == LAM_DIMENSION_CONDUCTIVITY)
+    PetscCall(LamSceneScale(node, si * scales->stress, PetscSqr(scales->macro_length), number));
   if (key->dimension == LAM_DIMENSION_AREAL_ENERGY)
     PetscCall(LamSceneScale(node, si, scales->stress * scales->length, number));
   if (key->dimension == LAM_DIMENSION_STIFFNESS)

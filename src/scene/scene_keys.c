@@ -16,10 +16,25 @@ static const LamKey last_keys[] = {
 };
 static LAM_KEY_TABLE(last, last_keys);
 
-static const LamKeyTable *const tables[] = {
-    &first,          &LamCellKeys,     &LamWallKeys,   &LamVariationKeys, &LamInterfaceKeys, &LamLamellaKeys,
-    &LamTissueKeys,  &LamStrengthKeys, &LamLoadKeys,   &LamSampleKeys,    &LamMeshKeys,      &LamBoundaryKeys,
-    &LamProgramKeys, &LamResponseKeys, &LamRegionKeys, &LamMapKeys,       &LamProcessKeys,   &last};
+static const LamKeyTable *const tables[] = {&first,
+                                            &LamCellKeys,
+                                            &LamWallKeys,
+                                            &LamVariationKeys,
+                                            &LamInterfaceKeys,
+                                            &LamLamellaKeys,
+                                            &LamTissueKeys,
+                                            &LamStrengthKeys,
+                                            &LamLoadKeys,
+                                            &LamSampleKeys,
+                                            &LamMeshKeys,
+                                            &LamBoundaryKeys,
+                                            &LamProgramKeys,
+                                            &LamResponseKeys,
+                                            &LamRegionKeys,
+                                            &LamMapKeys,
+                                            &LamProcessKeys,
+                                            &LamTransportKeys,
+                                            &last};
 
 const LamKey *LamKeyAt(PetscInt i)
 {
@@ -103,7 +118,8 @@ static void SingleText(const LamKey *key, char text[LAM_KEY_TEXT_LENGTH])
                                          "an angle",           "a time",
                                          "a temperature",      "a rate",
                                          "a molar energy",     "a permeability",
-                                         "an energy per area", "a stress per length"};
+                                         "an energy per area", "a stress per length",
+                                         "a conductivity"};
   static const char *const phrases[] = {LAM_KEY_TYPES(TYPE_PHRASE)};
   const char *what = key->unit ? articles[key->dimension] : phrases[key->type];
   char bounds[LAM_KEY_TEXT_LENGTH];

@@ -78,7 +78,7 @@ typedef struct {
 
 extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamInterfaceKeys, LamLamellaKeys, LamTissueKeys,
     LamStrengthKeys, LamLoadKeys, LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys,
-    LamRegionKeys, LamMapKeys, LamProcessKeys;
+    LamRegionKeys, LamMapKeys, LamProcessKeys, LamTransportKeys;
 
 /* Key i = 0, 1, ... of all tables; NULL after the last one. */
 const LamKey *LamKeyAt(PetscInt i);
@@ -132,6 +132,8 @@ PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, Pe
 PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
+/* scene_transport.c, part of the block `process`: after its water and surroundings. */
+PetscErrorCode LamSceneBuildTransport(const LamNode *process, LamScene *scene);
 #define LAM_SAME_TIME 1e-9 /* of the duration: above the rounding of a sum of times, below what anyone writes */
 /* scene_process_doubts.c: warns of what a complete process accepts and nobody means. cycle: the time that the program
    takes once. */

@@ -502,6 +502,7 @@ PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene)
       "write law: bonded or contact");
   PetscCall(BuildWater(LamNodeFind(block, "water"), scene));
   PetscCall(BuildSurroundings(LamNodeFind(block, "surroundings"), scene));
+  PetscCall(LamSceneBuildTransport(block, scene));
   PetscCall(BuildKinetics(LamNodeFind(block, "kinetics"), scene));
   PetscCall(BuildLegs(block, scene, &cycle));
   PetscCall(BuildDuration(block, scene, cycle));

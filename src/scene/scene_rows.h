@@ -20,6 +20,7 @@
 #define RATE(key_path) OF_DIMENSION(key_path, RATE, "/s")
 #define MOLAR_ENERGY(key_path) OF_DIMENSION(key_path, MOLAR_ENERGY, "kJ/mol")
 #define PERMEABILITY(key_path) OF_DIMENSION(key_path, PERMEABILITY, "m/s/MPa")
+#define CONDUCTIVITY(key_path) OF_DIMENSION(key_path, CONDUCTIVITY, "m^2/s/MPa")
 #define AREAL_ENERGY(key_path) OF_DIMENSION(key_path, AREAL_ENERGY, "J/m^2")
 #define STIFFNESS(key_path) OF_DIMENSION(key_path, STIFFNESS, "MPa/mm")
 #define REAL(key_path) .path = key_path, .type = LAM_KEY_REAL

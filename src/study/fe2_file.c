@@ -66,10 +66,16 @@ static PetscReal StrengthOf(const LamStrength *strength, LamPointField field)
 
 /* Whether a field also has its largest (ellipticity: smallest) value in an element. The others hardly vary within an
    element. */
+/* Of no other bodies than those in which water moves. */
+static PetscBool IsOfTransport(LamPointField field)
+{
+  return (PetscBool)(field == LAM_POINT_POTENTIAL || field == LAM_POINT_APOPLAST);
+}
+
 static PetscBool HasLargest(LamPointField field)
 {
   return (PetscBool)(!LamPointFieldIsEnergy(field) && field != LAM_POINT_TURGOR && field != LAM_POINT_LUMEN &&
-                     field != LAM_POINT_INTERPOLATED && field != LAM_POINT_DOUBTFUL);
+                     field != LAM_POINT_INTERPOLATED && field != LAM_POINT_DOUBTFUL && !IsOfTransport(field));
 }
 
 static void AddField(LamFE2File file, const char name[], const char ending[], Field field)
@@ -101,7 +107,7 @@ static PetscBool IsOfLamella(LamPointField field)
   return (PetscBool)(LamPointFieldIsEnergy(field) || field == LAM_POINT_BROKEN || field == LAM_POINT_BROKEN_FACE);
 }
 
-static void ChooseFields(LamFE2File file, const LamStrength *strength, PetscBool lamella)
+static void ChooseFields(LamFE2File file, const LamStrength *strength, PetscBool lamella, PetscBool transport)
 {
   const PetscReal MPa = file->scales.stress * 1e-6, mm = file->scales.macro_length * 1e3;
   const Field tensors[] = {{"u", 3, offsetof(LamMacroFields, u), 0, 2, LAM_POINT_FIELD_COUNT, mm, "mm"},
@@ -113,7 +119,7 @@ static void ChooseFields(LamFE2File file, const LamStrength *strength, PetscBool
   for (LamPointField k = 0; k < LAM_POINT_FIELD_COUNT; k++) {
     const PetscBool stress = LamPointFieldIsStress(k);
 
-    if (IsOfLamella(k) && !lamella) continue;
+    if ((IsOfLamella(k) && !lamella) || (IsOfTransport(k) && !transport)) continue;
     if (LamPointFieldIsEnergy(k))
       AddScalars(file, k, PETSC_FALSE, MPa * 1e3, "kJ/m^3");
     else
@@ -128,7 +134,8 @@ PetscErrorCode LamFE2FileOpen(const char path[], LamWriteMode mode, const LamSce
   PetscCall(PetscNew(file));
   PetscCall(PetscStrncpy((*file)->path, path, sizeof((*file)->path)));
   (*file)->scales = scene->scales;
-  ChooseFields(*file, &scene->strength, (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA));
+  ChooseFields(*file, &scene->strength, (PetscBool)(scene->micro.interface == LAM_INTERFACE_LAMELLA),
+               LamTransportHasPotentials(scene));
   PetscErrorCode ierr = LamRecordWriterOpen(path, "fe2", mode, scene, &(*file)->writer);
   if (ierr) PetscCall(PetscFree(*file));
   PetscCall(ierr);

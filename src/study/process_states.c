@@ -167,10 +167,13 @@ PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history)
       COLUMN(LamBodyState, "plasmolysed", plasmolysed, 1, "1"),
       COLUMN(LamBodyState, "debonded_fraction", step.debonded_fraction, 1, "1"),
   };
+  const Column moving[] = {COLUMN(LamBodyState, "inflow", inflow, 1, "1"),
+                           COLUMN(LamBodyState, "water_balance", water_balance, 1, "1")};
   PetscErrorCode ierr;
   PetscInt *at;
 
   PetscFunctionBeginUser;
+  for (int c = 0; c < 2 && LamTransportHasPotentials(h->scene); c++) PetscCall(WriteColumn(&s, "", moving[c], 1));
   PetscCall(WriteColumns(&s, PETSC_STATIC_ARRAY_LENGTH(columns), columns, offsetof(LamBodyState, ratio),
                          offsetof(LamBodyState, factor)));
   PetscCall(WriteColumn(&s, "", (Column)COLUMN(LamBodyState, "event_place", place, mm, "mm"), 2));

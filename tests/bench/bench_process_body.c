@@ -113,10 +113,10 @@ typedef struct {
   PetscReal start[MOST_POINTS], water[MOST_POINTS], u[8 * MOST_POINTS], pressures[MOST_POINTS];
 } Split;
 
-static void GivenWater(void *ctx, PetscInt point, PetscReal turgor, PetscReal *water, PetscReal *slope)
+static void GivenWater(void *ctx, PetscInt point, PetscReal turgor, const PetscReal potential[], LamWater *water)
 {
-  *water = ((Split *)ctx)->water[point];
-  *slope = 0;
+  water->water = ((Split *)ctx)->water[point];
+  water->slope = 0;
 }
 
 /* V = V_n + dt k (pi(V) - outside - p), p = p_n + (V - V_n) / give; give infinite: p is held. */
@@ -142,7 +142,10 @@ static PetscErrorCode Step(Split *s, PetscReal time, PetscReal dt, PetscBool hol
 {
   const LamSurroundings *at = s->scene->process.surroundings;
   const PetscReal outside = at[0].outside + fmin(1, time / STORED) * (at[1].outside - at[0].outside);
-  LamMacroInstant instant = {fmax(0, (time - STORED) / (END - STORED)), 1, 1, 0.5 + 0.5 * exp(-0.3 * time / 86400)};
+  LamMacroInstant instant = {.load = fmax(0, (time - STORED) / (END - STORED)),
+                             .turgor = 1,
+                             .lamella = 1,
+                             .walls = 0.5 + 0.5 * exp(-0.3 * time / 86400)};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < s->points; p++) {
@@ -154,10 +157,10 @@ static PetscErrorCode Step(Split *s, PetscReal time, PetscReal dt, PetscBool hol
     s->water[p] =
         NextWater(s, p, point.load->turgor, holds_turgor ? INFINITY : compliance * J / instant.walls, outside, dt);
   }
-  PetscCall(LamMacroBalance(s->macro, &instant, s->u, s->pressures, ok));
+  PetscCall(LamMacroBalance(s->macro, &instant, s->u, s->pressures, NULL, ok));
   if (!*ok) PetscFunctionReturn(0);
   PetscCall(LamMacroAccept(s->macro));
-  PetscCall(LamMacroGetState(s->macro, s->u, s->pressures));
+  PetscCall(LamMacroGetState(s->macro, s->u, s->pressures, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -198,7 +201,7 @@ static PetscErrorCode Splitting(LamScene *scene, PetscInt steps, PetscBool holds
   PetscCall(MakeSoft(s.points, &responder));
   PetscCall(LamMacroSetResponder(s.macro, responder));
   PetscCall(LamMacroStart(s.macro, ok, why));
-  PetscCall(LamMacroGetState(s.macro, s.u, s.pressures));
+  PetscCall(LamMacroGetState(s.macro, s.u, s.pressures, NULL));
   for (PetscInt p = 0; p < s.points; p++) {
     LamMacroPoint point;
 

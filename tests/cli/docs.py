@@ -124,7 +124,7 @@ def masked(lines):
             text = word[0]
             if re.match(r" *\d", line) and ends and (word.end() in ends or 0 < residuals <= word.start()):
                 text = "#"
-            if re.fullmatch(r"-?[\d.]+e-(1[2-9]|[2-9]\d)", text) or re.fullmatch(r"-?0?\.?0+", text):
+            if re.fullmatch(r"-?[\d.]+e-(1[2-9]|[2-9]\d)", text) or re.fullmatch(r"-?0?\.?0+(e\+00)?", text):
                 text = "0"
             words.append(text)
         result.append(words)

@@ -82,3 +82,15 @@ expect 0 "$lamella" info long.h5 --check
 expect 1 "$lamella" process small.yaml --frames 4
 expect 1 "$lamella" process small.yaml -d d.h5 -o d.h5
 expect 2 -e 'has no block `process`' "$lamella" process "$source/tests/scenes/tissue-block.yaml"
+
+# a slice in baths: fields in the files, and what flows in is what the cells take up
+expect 0 "$lamella" process "$source/tests/scenes/slice-baths.yaml" -d slice.h5 -o slice-baths.h5 --json
+/usr/bin/python3 - <<'PYTHON' || fail "inflow and balance"
+import json, sys
+states = [json.loads(line) for line in open("out.txt")]
+good = all(abs(s["water_balance"]) < 1e-10 and abs(s["water"] - 1 - s["inflow"]) < 1e-10 for s in states)
+sys.exit(0 if good and max(s["inflow"] for s in states) > 0.05 and states[-1]["inflow"] < -0.02 else 1)
+PYTHON
+grep -q 'Name="water_potential"' slice-baths.xdmf && grep -q 'Name="apoplast_potential"' slice-baths.xdmf || fail "potentials in XDMF"
+expect 0 "$lamella" info slice-baths.h5 --check
+expect 0 "$lamella" plot --dpi 40 slice-baths.h5 --field apoplast_potential --state 3 -o slice.svg

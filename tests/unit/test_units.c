@@ -73,6 +73,7 @@ TEST(energies_and_permeabilities_are_converted)
   AssertSI("138 kJ/mol", LAM_DIMENSION_MOLAR_ENERGY, 138e3);
   AssertSI("1e-7 m/s/MPa", LAM_DIMENSION_PERMEABILITY, 1e-13);
   AssertSI("2 um s-1 bar-1", LAM_DIMENSION_PERMEABILITY, 2e-11);
+  AssertSI("1e-10 m^2/s/MPa", LAM_DIMENSION_CONDUCTIVITY, 1e-16);
 }
 
 TEST(energies_per_area_and_stresses_per_length_are_converted)

@@ -51,6 +51,8 @@ FIELDS = {
         ("wall_tension_ratio_max", "wall tension over strength, largest", None),
         ("lamella_normal_ratio_max", "normal traction over strength, largest", None),
         ("lamella_shear_ratio_max", "shear traction over strength, largest", None),
+        ("water_potential", "water potential of cells $\\psi_c$", "MPa"),
+        ("apoplast_potential", "water potential of the apoplast $\\psi_a$", "MPa"),
         ("broken_fraction", "broken share of the lamella", None),
         ("broken_fraction_max", "broken share of the lamella, largest", None),
         ("broken_face_max", "broken share of a face family, largest", None),
