@@ -189,9 +189,6 @@ static inline PetscInt LamTablePlane(const LamTablePoint *point, int line)
 {
   return PetscMax(0, point->z - 1) + line;
 }
-/* The states of one of these lines; returns their number. */
-PetscInt LamTableLine(LamTable table, const LamTableNode *node, const LamTablePoint *point, int line,
-                      const LamTableState **states);
 /* The states of a node's column on both sides of the point; NULL: missing. */
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, int line,
                      const LamTableState *ends[2]);

@@ -5,14 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-PetscInt LamTableLine(LamTable table, const LamTableNode *node, const LamTablePoint *point, int line,
-                      const LamTableState **states)
+/* The states of a knot of F33; returns their number. */
+static PetscInt FindLine(const LamTableNode *node, int z, const LamTableState **states)
 {
-  const int z = point->z + line;
   PetscInt low = 0, end, high = node->count;
 
-  *states = LamTableStates(table, node);
-  if (!table->grid->z_cells) return node->count;
   while (low < high) { /* the first state of this or a larger F33 */
     const PetscInt middle = (low + high) / 2;
 
@@ -29,9 +26,9 @@ PetscInt LamTableLine(LamTable table, const LamTableNode *node, const LamTablePo
 void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, int line,
                      const LamTableState *ends[2])
 {
-  const LamTableState *states;
+  const LamTableState *states = LamTableStates(table, node);
   const int last = point->root + LAM_ROOT;
-  const PetscInt count = LamTableLine(table, node, point, line, &states);
+  const PetscInt count = table->grid->z_cells ? FindLine(node, point->z + line, &states) : node->count;
   PetscInt low = 0, high = count;
 
   ends[0] = ends[1] = NULL;

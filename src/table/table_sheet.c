@@ -205,7 +205,7 @@ void LamTableAddSheets(LamTable table, const LamTableCell *cell, const LamTableP
     sum->bump_z[k] = sqrt(PetscSqr(sum->bump_z[k]) + bump_z[k]);
   }
   LamHermiteQuintic(corner[PHI], h, t, &sum->phi);
-  for (int o = 1; o < orders; o++) LamHermiteQuintic(corner[o], h, t, &part[o]);
+  for (int o = 1; o < orders; o++) LamHermiteQuinticSlope(corner[o], h, t, &part[o]);
   AddDerivatives(table, part, sum);
   AddTurgor(table, sheets, h, t, point->step, sum);
 }
