@@ -136,7 +136,9 @@ typedef struct {
 
 /* True if F33 = 1 and there are no out-of-plane shears. */
 LAM_EXPORT PetscBool LamPlaneStrain(const PetscReal F[9]);
-/* Returns PETSC_FALSE, and sets status and reason of the response, if the load is not admissible in plane strain. */
+/* Returns PETSC_FALSE, and sets status and reason of the response, if the load is not admissible in plane strain;
+   LamLoadValidateInPlane: likewise with any F33. */
+LAM_EXPORT PetscBool LamLoadValidateInPlane(const LamLoad *load, LamResponse *response);
 LAM_EXPORT PetscBool LamLoadValidate(const LamLoad *load, LamResponse *response);
 
 /* Initialises a response: reals NaN, counts 0, status LAM_NOT_CONVERGED; copies the load. */

@@ -127,6 +127,7 @@ static void PrintGrid(const json_t *grid)
   printf(" of free cells, at cohesion %.4g MPa\n", json_number_value(json_object_get(grid, "cohesion")));
   PrintRange("  free cells", json_object_get(grid, "free_cell_strain"), " in strain");
   PrintRange("  grid of suction", json_object_get(grid, "suction"), " MPa");
+  PrintRange("  grid of F33", json_object_get(grid, "F33"), "");
 }
 
 /* Prints the nodes used for interpolation. */

@@ -33,6 +33,7 @@ typedef struct {
 
 static const Figure Figures[] = {
     {"measured", "P", "error of P, %", offsetof(LamAudited, error), 100},
+    {"measured", "P33", "error of P33, %", offsetof(LamAudited, axial), 100},
     {"estimated", "P", "estimated, %", offsetof(LamAudited, estimate), 100},
     {"measured", "tangent", "error of the tangent, %", offsetof(LamAudited, tangent), 100},
     {"measured", "opening_fraction", "error of the opening, of V0", offsetof(LamAudited, opening), 1},
@@ -107,15 +108,28 @@ static PetscReal Share(PetscInt part, PetscInt whole)
   return whole ? (PetscReal)part / (PetscReal)whole : NAN;
 }
 
+/* The error of P33 is measured where F33 varies. */
+static PetscBool IsKnown(const Summary *s, int f)
+{
+  return (PetscBool)(Figures[f].offset != offsetof(LamAudited, axial) || isfinite(s->quantiles[f][0]));
+}
+
 /* ---- JSON output ---- */
+
+static PetscBool HasF33(const LamAudit *a)
+{
+  return (PetscBool)(a->box.F33[1] > a->box.F33[0]);
+}
 
 static json_t *BoxToJSON(const LamAudit *a)
 {
   const PetscReal MPa = 1e-6 * a->from->scales.stress;
+  json_t *box = json_pack("{s:o, s:o, s:f, s:s}", "principal_log_strain", LamJSONReals(2, a->box.strain, 1), "turgor",
+                          LamJSONReals(2, a->box.turgor, MPa), "cohesion", (double)(a->box.cohesion * MPa), "origin",
+                          a->box.origin);
 
-  return json_pack("{s:o, s:o, s:f, s:s}", "principal_log_strain", LamJSONReals(2, a->box.strain, 1), "turgor",
-                   LamJSONReals(2, a->box.turgor, MPa), "cohesion", (double)(a->box.cohesion * MPa), "origin",
-                   a->box.origin);
+  if (HasF33(a)) json_object_set_new(box, "F33", LamJSONReals(2, a->box.F33, 1));
+  return box;
 }
 
 static json_t *WorstToJSON(const LamAudit *a, PetscInt worst)
@@ -136,7 +150,7 @@ static json_t *GroupToJSON(const Summary *s, const char group[])
   for (int f = 0; f < FIGURE_COUNT; f++) {
     json_t *quantiles;
 
-    if (strcmp(Figures[f].group, group)) continue;
+    if (strcmp(Figures[f].group, group) || !IsKnown(s, f)) continue;
     quantiles = json_object();
     for (int q = 0; q < SHARE_COUNT; q++)
       json_object_set_new(quantiles, ShareNames[q], LamJSONReal(s->quantiles[f][q]));
@@ -191,6 +205,7 @@ static void PrintQuestions(const LamAudit *a, PetscReal seconds, PetscMPIInt ran
 
   printf("%-16s principal logarithmic strains %.4g to %.4g, turgor %.4g to %.4g MPa", "states",
          (double)a->box.strain[0], (double)a->box.strain[1], (double)(turgor[0] * MPa), (double)(turgor[1] * MPa));
+  if (HasF33(a)) printf(", F33 %.4g to %.4g", (double)a->box.F33[0], (double)a->box.F33[1]);
   if (LamCellsPart(a->from->micro.interface)) printf(", cohesion %.4g MPa", (double)(a->box.cohesion * MPa));
   printf("; %s\n", a->box.origin);
   printf("%-16s %" PetscInt_FMT ", seed %" PetscInt_FMT "\n", "asked", a->asked, a->seed);
@@ -208,6 +223,7 @@ static void PrintFigures(const Summary *s)
 {
   printf("\n%-30s %9s %9s %9s %9s %9s\n", "", "median", "90 %", "95 %", "99 %", "largest");
   for (int f = 0; f < FIGURE_COUNT; f++) {
+    if (!IsKnown(s, f)) continue;
     printf("%-30s", Figures[f].words);
     for (int q = 0; q < SHARE_COUNT; q++) printf(" %9.3g", (double)(Figures[f].scale * s->quantiles[f][q]));
     putchar('\n');
@@ -231,8 +247,9 @@ static void PrintWorst(const LamAudit *a, PetscInt worst)
   const LamLoad *load = &a->loads[worst];
   const PetscReal MPa = 1e-6 * a->from->scales.stress, *F = load->F;
 
-  printf("%-16s at F = %.6f %.6f %.6f %.6f, turgor %.6g MPa: %.3g %%, estimated %.3g %%\n", "largest error",
-         (double)F[0], (double)F[1], (double)F[3], (double)F[4], (double)(load->turgor * MPa),
+  printf("%-16s at F = %.6f %.6f %.6f %.6f, ", "largest error", (double)F[0], (double)F[1], (double)F[3], (double)F[4]);
+  if (F[8] != 1) printf("F33 %.6f, ", (double)F[8]);
+  printf("turgor %.6g MPa: %.3g %%, estimated %.3g %%\n", (double)(load->turgor * MPa),
          (double)(100 * a->results[worst].error), (double)(100 * a->results[worst].estimate));
 }
 

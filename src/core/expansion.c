@@ -53,22 +53,22 @@ static PetscReal Volume(const PetscReal c[3], PetscReal gradient[3], PetscReal h
   return J;
 }
 
-/* Adds s p J to the energy and to P33, with all their derivatives. */
+/* Adds s p J to the energy, and its derivative in F33 to P33, with all their derivatives; J here: in the plane. */
 static void AddFluid(PetscReal s, LamExpansion *e)
 {
   PetscReal JC[3], JCC[3][3];
-  const PetscReal J = Volume(e->x, JC, JCC), p = e->x[TURGOR];
+  const PetscReal J = Volume(e->x, JC, JCC), p = e->x[TURGOR], sF = s * e->F33;
 
-  e->energy += s * p * J;
-  e->gradient[TURGOR] += s * J;
+  e->energy += sF * p * J;
+  e->gradient[TURGOR] += sF * J;
   e->P33 += s * p * J;
   e->P33_gradient[TURGOR] += s * J;
   for (int a = 0; a < 3; a++) {
-    e->gradient[a] += s * p * JC[a];
+    e->gradient[a] += sF * p * JC[a];
     e->P33_gradient[a] += s * p * JC[a];
-    e->hessian[a][TURGOR] += s * JC[a];
-    e->hessian[TURGOR][a] += s * JC[a];
-    for (int b = 0; b < 3; b++) e->hessian[a][b] += s * p * JCC[a][b];
+    e->hessian[a][TURGOR] += sF * JC[a];
+    e->hessian[TURGOR][a] += sF * JC[a];
+    for (int b = 0; b < 3; b++) e->hessian[a][b] += sF * p * JCC[a][b];
   }
 }
 
@@ -176,6 +176,7 @@ PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpan
 
   memset(e, 0, sizeof(*e));
   LamVariables(&record->load, e->x);
+  e->F33 = record->load.F[8];
   InPlane(record->load.F, F);
   Variations(F, dF);
   ExpandStrain(record, dF, e);
@@ -203,6 +204,16 @@ void LamExpansionMove(const LamExpansion *expansion, const PetscReal x[LAM_VARIA
     moved->gradient[a] += slope;
     moved->P33 += e.P33_gradient[a] * step;
   }
+}
+
+void LamExpansionStretch(PetscReal A3333, PetscReal F33, LamExpansion *e)
+{
+  const PetscReal step = F33 - e->F33;
+
+  e->F33 = F33;
+  e->energy += (e->P33 + 0.5 * A3333 * step) * step;
+  e->P33 += A3333 * step;
+  for (int a = 0; a < LAM_VARIABLES; a++) e->gradient[a] += e->P33_gradient[a] * step;
 }
 
 /* ---- expansion to response ---- */

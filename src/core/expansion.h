@@ -6,29 +6,31 @@
 
 #include <lamella/response.h>
 
-/* x = (c0, c1, c2, p, g): c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12, turgor, cohesion. */
+/* x = (c0, c1, c2, p, g): c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12, turgor, cohesion; at one F33. */
 #define LAM_VARIABLES 5
 /* Of turgor, and of turgor with cohesion, in the distance of loads: strain per pressure in units of C1 + C2. */
 #define LAM_TURGOR_WEIGHT 0.011
 #define LAM_SUCTION_WEIGHT 0.5
 
 /*
-  Value, gradient and Hessian at x of Phi = Psi + p J. Without the fluid's part -p J the potential varies slowly with J
-  and hardly with p (effective-stress principle, docs/theory/homogenisation.md). P33 + p J is a scalar function of the
-  same variables, with its gradient. Bonded tissue does not depend on g: derivatives with respect to g are 0.
+  Value, gradient and Hessian at x of Phi = Psi + p J, J = det F. Without the fluid's part -p J the potential varies slowly with J
+  and hardly with p (effective-stress principle, docs/theory/homogenisation.md). dPhi/dF33, i.e. P33 plus p times
+  J in the plane, is a scalar function of the same variables, with its gradient. Bonded tissue does not depend on g: derivatives with respect to g are 0.
 */
 typedef struct {
   PetscReal x[LAM_VARIABLES];
   PetscReal energy, gradient[LAM_VARIABLES], hessian[LAM_VARIABLES][LAM_VARIABLES];
-  PetscReal P33, P33_gradient[LAM_VARIABLES]; /* of P33 + p J */
+  PetscReal F33, P33, P33_gradient[LAM_VARIABLES]; /* of dPhi/dF33 */
 } LamExpansion;
 
-/* The variables of a load in plane strain. */
+/* The variables of a load. */
 void LamVariables(const LamLoad *load, PetscReal x[LAM_VARIABLES]);
 /* From a record with fields; PETSC_FALSE if one of its derivatives is unknown. */
 PetscBool LamExpansionMake(const LamResponse *record, PetscBool bonded, LamExpansion *expansion);
 /* The same model at x, with the Hessian of the expansion. `moved` may be `expansion`. */
 void LamExpansionMove(const LamExpansion *expansion, const PetscReal x[LAM_VARIABLES], LamExpansion *moved);
+/* The same model at another F33, to second order; A3333: as below. */
+void LamExpansionStretch(PetscReal A3333, PetscReal F33, LamExpansion *expansion);
 /*
   The metric of P in its derivatives with respect to C: |P|^2 in the plane = sum_ab v_a B_ab v_b for P = sum v_a K_a,
   K_a = dc_a/dF.

@@ -23,15 +23,19 @@ LamLoad LamLoadOfStrains(PetscReal first, PetscReal second, PetscReal angle, Pet
   return (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1}, .turgor = turgor, .cohesion = cohesion};
 }
 
-PetscBool LamPlaneStrain(const PetscReal F[9])
-{
-  const PetscReal tiny = 10 * PETSC_MACHINE_EPSILON;
+static const PetscReal TINY = 10 * PETSC_MACHINE_EPSILON;
 
-  return (PetscBool)(fabs(F[2]) <= tiny && fabs(F[5]) <= tiny && fabs(F[6]) <= tiny && fabs(F[7]) <= tiny &&
-                     fabs(F[8] - 1) <= tiny);
+static PetscBool NoShear(const PetscReal F[9])
+{
+  return (PetscBool)(fabs(F[2]) <= TINY && fabs(F[5]) <= TINY && fabs(F[6]) <= TINY && fabs(F[7]) <= TINY);
 }
 
-PetscBool LamLoadValidate(const LamLoad *load, LamResponse *r)
+PetscBool LamPlaneStrain(const PetscReal F[9])
+{
+  return (PetscBool)(NoShear(F) && fabs(F[8] - 1) <= TINY);
+}
+
+PetscBool LamLoadValidateInPlane(const LamLoad *load, LamResponse *r)
 {
   const PetscReal *F = load->F;
   PetscReal sum = load->turgor + load->cohesion, J;
@@ -43,11 +47,18 @@ PetscBool LamLoadValidate(const LamLoad *load, LamResponse *r)
     snprintf(r->reason, sizeof(r->reason), "det F = %g; a deformation gradient needs det F > 0", (double)J);
     return PETSC_FALSE;
   }
-  if (!LamPlaneStrain(F)) {
-    r->status = LAM_OUT_OF_REACH;
-    snprintf(r->reason, sizeof(r->reason),
-             "the records are of plane strain; F33 must be 1 and the out-of-plane shears 0");
-    return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
+  if (NoShear(F)) return PETSC_TRUE;
+  r->status = LAM_OUT_OF_REACH;
+  snprintf(r->reason, sizeof(r->reason), "the records are of no out-of-plane shear; F13, F23, F31 and F32 must be 0");
+  return PETSC_FALSE;
+}
+
+PetscBool LamLoadValidate(const LamLoad *load, LamResponse *r)
+{
+  if (!LamLoadValidateInPlane(load, r)) return PETSC_FALSE;
+  if (LamPlaneStrain(load->F)) return PETSC_TRUE;
+  r->status = LAM_OUT_OF_REACH;
+  snprintf(r->reason, sizeof(r->reason), "F33 = %g; the records are of plane strain, and F33 must be 1",
+           (double)load->F[8]);
+  return PETSC_FALSE;
 }

@@ -27,12 +27,13 @@ typedef enum {
 typedef struct {
   LamScatterUse use;
   PetscInt images;    /* bit i: image i is distinct; images that coincide with an earlier one are left out */
+  PetscReal F33;
   LamExpansion model; /* only x where `use` is LAM_SCATTER_REFUSES */
 } LamScattered;
 
 /* Quantities common to all images of a state. A query scans these and evaluates the images of few states. */
 typedef struct {
-  PetscReal mean, deviator, turgor, cohesion; /* c0, |c1 + i c2|, p, g; mean infinite: not plane strain */
+  PetscReal mean, deviator, turgor, cohesion, F33; /* c0, |c1 + i c2|, p, g; mean infinite: sheared out of the plane */
 } LamScatterPlace;
 
 /* Records outside the grid, in their order. */
@@ -93,7 +94,7 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record);
 
 /*
   Distances of scattered records from a query, dC/2 being the Green strain, so that the distance is a strain:
-    d^2 = |dc|^2 / 4 + (LAM_TURGOR_WEIGHT dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2
+    d^2 = |dc|^2 / 4 + (LAM_TURGOR_WEIGHT dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2, + dF33^2
 */
 typedef PetscReal LamScatterVector[LAM_VARIABLES];
 typedef PetscReal LamScatterMatrix[LAM_VARIABLES][LAM_VARIABLES];
@@ -119,8 +120,10 @@ typedef struct {
 
 /* Initialises the search at a load, without looking at records. */
 void LamScatterBegin(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
-/* Finds the nearest records of each use. */
-void LamScatterFind(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
+/* Finds the nearest records of each use; same_F33: of those that respond, only records of the load's F33. */
+void LamScatterFind(LamDatabase database, const LamLoad *load, PetscBool same_F33, LamScatterSearch *search);
+/* Whether record number k has the load's F33, up to rounding. */
+PetscBool LamScatterSameF33(const LamScatterSearch *search, PetscInt k);
 /* v = M delta; returns delta . M delta. */
 PetscReal LamScatterApply(const LamScatterMetric *metric, const LamScatterVector delta, LamScatterVector v);
 PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered *state, PetscInt image);
@@ -132,7 +135,7 @@ PetscReal LamScatterLowerBound(const LamScatterSearch *search, const LamScatterP
 #define LAM_OWN_STATE 1e-6    /* strain: within this distance a query is a record's own state */
 /*
   Response from the scattered records within `radius` (strain) of the nearest. The load must be valid
-  (LamLoadValidate), the response initialised by LamResponseInit. Thread-safe while no records are added.
+  (LamLoadValidateInPlane), the response initialised by LamResponseInit. Thread-safe while no records are added.
 */
 PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscReal radius, PetscReal accuracy,
                                LamResponse *response);

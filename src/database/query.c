@@ -14,7 +14,7 @@ static PetscErrorCode QueryScattered(LamDatabase database, const LamLoad *load, 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
-  if (LamLoadValidate(load, response)) PetscCall(LamScatterQuery(database, load, radius, accuracy, response));
+  if (LamLoadValidateInPlane(load, response)) PetscCall(LamScatterQuery(database, load, radius, accuracy, response));
   response->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }

@@ -19,6 +19,9 @@
   and, since a single model has no spread, the error of one model at this distance times the square of the nearest
   model's share of the weights. Measurements: docs/results/performance.md.
 
+  Records of another F33 do not blend: it is no variable of the models of a blend. That of a single record, which a
+  material point holds, has it to second order.
+
   Only records that are converged, stable, of branch 0 and without floating cells are blended. A record of another
   branch or with floating cells serves its own state only; the model of one of another branch also serves the material
   points that hold it (scatter_model.h). Such records and failed ones forbid a blend unless they are much farther away
@@ -250,7 +253,8 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
 
   if (search->blends.state < 0) {
     snprintf(r->reason, sizeof(r->reason),
-             "the database has no usable record (converged, stable, branch 0, no cell floats)");
+             "the database has no usable record (converged, stable, branch 0, no cell floats) at F33 = %.6g",
+             (double)r->load.F[8]);
     return PETSC_FALSE;
   }
   if (r->distance > radius) {
@@ -282,6 +286,7 @@ static void RespondFromModel(const LamScatterSearch *search, const LamScatterNea
   LamExpansion e;
 
   EvaluateModel(search, &search->db->scatter.states[at->state], at->image, delta, &e);
+  LamExpansionStretch(record->tangent[80], r->load.F[8], &e);
   LamImagesBackHessian(&search->db->images, at->image, e.hessian);
   r->distance = sqrt(at->distance2);
   r->error_estimate = error;
@@ -302,7 +307,7 @@ static void RespondFromBlend(const LamScatterSearch *search, PetscReal reach, La
 
   EvaluateModel(search, &scatter->states[search->blends.state], search->blends.image, delta, &sums.first);
   for (PetscInt k = 0; k < scatter->n; k++)
-    if (scatter->states[k].use == LAM_SCATTER_BLENDS &&
+    if (scatter->states[k].use == LAM_SCATTER_BLENDS && LamScatterSameF33(search, k) &&
         LamScatterLowerBound(search, &scatter->places[k]) < reach * reach)
       AddState(search, k, reach, &sums);
   Finish(search, &sums, &blend);
@@ -337,7 +342,7 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
   LamScatterSearch search;
 
   PetscFunctionBeginUser;
-  LamScatterFind(database, load, &search);
+  LamScatterFind(database, load, PETSC_TRUE, &search);
   own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
   if (IsOwnState(own)) {
     RespondFromModel(&search, own, 0, response);
@@ -358,7 +363,7 @@ void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterMo
   LamScatterSearch search;
   const LamScatterNearest *at;
 
-  LamScatterFind(database, load, &search);
+  LamScatterFind(database, load, PETSC_FALSE, &search);
   at = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
   *model = (LamScatterModel){-1, 0};
   if (at->state < 0 || database->scatter.records[at->state].floating_cells > 0) return;
@@ -382,7 +387,7 @@ PetscErrorCode LamScatterModelQuery(LamDatabase database, const LamScatterModel 
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
   response->status = LAM_OUT_OF_REACH;
-  if (!LamLoadValidate(load, response)) PetscFunctionReturn(0);
+  if (!LamLoadValidateInPlane(load, response)) PetscFunctionReturn(0);
   LamScatterBegin(database, load, &search);
   at.distance2 = LamScatterDistance2(&search, &database->scatter.states[at.state], at.image);
   error = OneModelError(database, at.distance2);

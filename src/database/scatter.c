@@ -25,23 +25,24 @@ static PetscInt DistinctImages(const LamImages *images, const PetscReal x[LAM_VA
   return distinct;
 }
 
-static LamScatterPlace PlaceOf(const PetscReal x[LAM_VARIABLES])
+static LamScatterPlace PlaceOf(const PetscReal x[LAM_VARIABLES], PetscReal F33)
 {
-  return (LamScatterPlace){x[0], hypot(x[1], x[2]), x[3], x[4]};
+  return (LamScatterPlace){x[0], hypot(x[1], x[2]), x[3], x[4], F33};
 }
 
-/* Whether the load is finite, plane strain, and has J > 0. */
+/* Whether the load is finite, in the plane, and has J > 0. */
 static PetscBool HasPlace(const LamLoad *load)
 {
   PetscReal sum = load->turgor + load->cohesion;
+  LamResponse unused;
 
   for (int i = 0; i < 9; i++) sum += load->F[i];
-  return (PetscBool)(isfinite(sum) && LamPlaneStrain(load->F) && load->F[0] * load->F[4] > load->F[1] * load->F[3]);
+  return (PetscBool)(isfinite(sum) && LamLoadValidateInPlane(load, &unused) && load->F[8] > 0);
 }
 
 static LamScattered StateOf(const LamImages *images, PetscBool bonded, const LamResponse *record)
 {
-  LamScattered state = {.use = LAM_SCATTER_REFUSES};
+  LamScattered state = {.use = LAM_SCATTER_REFUSES, .F33 = record->load.F[8]};
 
   LamVariables(&record->load, state.model.x);
   if (record->status == LAM_CONVERGED && record->stable && LamExpansionMake(record, bonded, &state.model))
@@ -66,7 +67,7 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record)
   scatter->places[at] = (LamScatterPlace){.mean = INFINITY};
   if (!HasPlace(&record->load)) PetscFunctionReturn(0);
   scatter->states[at] = StateOf(&database->images, bonded, record);
-  scatter->places[at] = PlaceOf(scatter->states[at].model.x);
+  scatter->places[at] = PlaceOf(scatter->states[at].model.x, record->load.F[8]);
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +99,13 @@ PetscReal LamScatterLowerBound(const LamScatterSearch *search, const LamScatterP
   const PetscReal dm = place->mean - at->mean, dd = place->deviator - at->deviator;
   const PetscReal dp = place->turgor - at->turgor, dg = place->cohesion - at->cohesion;
 
-  return m->strain * (dm * dm + dd * dd) + m->pp * dp * dp + 2 * m->pg * dp * dg + m->gg * dg * dg;
+  return m->strain * (dm * dm + dd * dd) + m->pp * dp * dp + 2 * m->pg * dp * dg + m->gg * dg * dg +
+         PetscSqr(place->F33 - at->F33);
+}
+
+PetscBool LamScatterSameF33(const LamScatterSearch *search, PetscInt k)
+{
+  return (PetscBool)(fabs(search->db->scatter.places[k].F33 - search->place.F33) < LAM_OWN_STATE);
 }
 
 PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered *state, PetscInt image)
@@ -106,7 +113,7 @@ PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered
   LamScatterVector delta, v;
 
   for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - state->model.x[a];
-  return LamScatterApply(&search->metric, delta, v);
+  return LamScatterApply(&search->metric, delta, v) + PetscSqr(search->place.F33 - state->F33);
 }
 
 void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
@@ -115,11 +122,11 @@ void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *sear
 
   *search = (LamScatterSearch){.db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none};
   LamVariables(load, search->x);
-  search->place = PlaceOf(search->x);
+  search->place = PlaceOf(search->x, load->F[8]);
   for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);
 }
 
-void LamScatterFind(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
+void LamScatterFind(LamDatabase db, const LamLoad *load, PetscBool same_F33, LamScatterSearch *search)
 {
   LamScatterNearest *const nearest[] = {&search->blends, &search->alone, &search->refuses}; /* by use */
   const LamScatter *scatter = &db->scatter;
@@ -130,6 +137,7 @@ void LamScatterFind(LamDatabase db, const LamLoad *load, LamScatterSearch *searc
     LamScatterNearest *best = nearest[state->use];
 
     if (!(LamScatterLowerBound(search, &scatter->places[k]) < best->distance2)) continue;
+    if (same_F33 && state->use != LAM_SCATTER_REFUSES && !LamScatterSameF33(search, k)) continue;
     for (PetscInt i = 0; i < db->images.count; i++) {
       PetscReal d2;
 

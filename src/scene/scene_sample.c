@@ -17,6 +17,12 @@ static const LamKey sample_keys[] = {
     {STRESS("sample.turgor.min"), INTO(LamSample, turgor_min), REQUIRED, .example = "0 MPa", .help = "Smallest."},
     {STRESS("sample.turgor.max"), INTO(LamSample, turgor_max), REQUIRED, .example = "0.05 MPa",
      .help = "Largest; not below `min`."},
+    {MAP("sample.F33"), .default_words = "1 alone: plane strain", .example = "{min: 0.8, max: 1.2}",
+     .help = "Stretch along the cells' axis, for axisymmetric bodies."},
+    {REAL("sample.F33.min"), INTO(LamSample, F33_min), REQUIRED, FROM(0.2), TO(5), .example = "0.8",
+     .help = "Smallest."},
+    {REAL("sample.F33.max"), INTO(LamSample, F33_max), REQUIRED, FROM(0.2), TO(5), .example = "1.2",
+     .help = "Largest; above `min`."},
     {INTEGER("sample.count"), INTO(LamSample, count), FROM(1), TO(100000000),
      .default_words = "as many as the accuracy needs", .example = "1000",
      .help = "Number of nodes of the table; those where it is least accurate come first."},
@@ -35,6 +41,16 @@ static PetscErrorCode CheckRange(const LamNode *range)
   PetscFunctionBeginUser;
   LamSceneCheck(!range || min->value.number[0] <= max->value.number[0], min,
                 "min is larger than max (%s in line %d); exchange them", max->text, max->line);
+  PetscFunctionReturn(0);
+}
+
+/* One F33 would be another plane strain, for which there is no axis. */
+static PetscErrorCode CheckF33(const LamNode *range, const LamSample *sample)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CheckRange(range));
+  LamSceneCheck(!range || sample->F33_max > sample->F33_min, LamNodeFind(range, "max"),
+                "is not above min; write a range, or leave `F33` out for plane strain");
   PetscFunctionReturn(0);
 }
 
@@ -61,10 +77,12 @@ PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
       "rve.wall.relaxation, for those in the end leave it out and write what is left of the moduli");
   scene->has_sample = PETSC_TRUE;
   sample->turgor_min = sample->turgor_max = scene->turgor;
+  sample->F33_min = sample->F33_max = 1;
   sample->accuracy = count ? 0.0 : scene->accuracy;
   PetscCall(LamSceneFill(block, &scene->scales, LamSample, sample));
   PetscCall(CheckRange(LamNodeFind(block, "stretch")));
   PetscCall(CheckRange(turgor));
+  PetscCall(CheckF33(LamNodeFind(block, "F33"), sample));
   for (const LamNode *end = turgor ? turgor->first : NULL; end; end = end->next)
     PetscCall(LamSceneCheckTurgor(end, end->value.number[0]));
   PetscFunctionReturn(0);

@@ -53,8 +53,12 @@ static PetscErrorCode FindBox(const LamQuerySource *from, LamAuditBox *box)
   *box = (LamAuditBox){.strain = {sample->stretch_min, sample->stretch_max},
                        .turgor = {sample->turgor_min, sample->turgor_max},
                        .cohesion = from->cohesion,
+                       .F33 = {1, 1},
                        .origin = "the sample box of its scene"};
   if (!from->scene->has_sample) PetscCall(FindCoverage(from, box));
+  if (!(sample->F33_max > sample->F33_min)) PetscFunctionReturn(0);
+  box->F33[0] = sample->F33_min;
+  box->F33[1] = sample->F33_max;
   PetscFunctionReturn(0);
 }
 
@@ -76,7 +80,11 @@ static LamLoad Draw(const LamAuditBox *box, uint64_t *state)
   const PetscReal second = Uniform(state, box->strain[0], box->strain[1]);
   const PetscReal angle = Uniform(state, 0, PETSC_PI);
 
-  return LamLoadOfStrains(first, second, angle, Uniform(state, box->turgor[0], box->turgor[1]), box->cohesion);
+  const PetscReal turgor = Uniform(state, box->turgor[0], box->turgor[1]);
+  LamLoad load = LamLoadOfStrains(first, second, angle, turgor, box->cohesion);
+
+  if (box->F33[1] > box->F33[0]) load.F[8] = exp(Uniform(state, log(box->F33[0]), log(box->F33[1])));
+  return load;
 }
 
 static void Count(json_t *counts, const char key[])
@@ -185,6 +193,8 @@ PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *f
   *result = (LamAudited){.compared = PETSC_TRUE,
                          .estimate = answer.error_estimate,
                          .error = LamStressError(scale, answer.P, fresh->P),
+                         .axial = audit->box.F33[1] > audit->box.F33[0] ? LamAxialError(scale, answer.P, fresh->P)
+                                                                        : (PetscReal)NAN,
                          .tangent = TangentError(scale, answer.tangent, fresh->tangent),
                          .opening = fabs(answer.opening_fraction - fresh->opening_fraction),
                          .lumen = fabs(answer.lumen_fraction - fresh->lumen_fraction),

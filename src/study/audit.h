@@ -10,7 +10,7 @@
 /* The box from which states are drawn; [0] smallest, [1] largest value. */
 typedef struct {
   PetscReal strain[2]; /* principal logarithmic strains */
-  PetscReal turgor[2], cohesion;
+  PetscReal turgor[2], cohesion, F33[2];
   const char *origin; /* "sample box of its scene", "what its records span" */
 } LamAuditBox;
 
@@ -18,6 +18,7 @@ typedef struct {
 typedef struct {
   PetscBool compared;
   PetscReal estimate, error; /* of P: error estimate of the response; LamStressError between response and solve */
+  PetscReal axial;           /* LamAxialError; NaN: F33 is 1 alone */
   PetscReal tangent;         /* |A - A_ref| / (|A_ref| + stress of 1 % strain), in-plane entries, Frobenius */
   PetscReal opening, lumen;  /* absolute differences of opening_fraction and lumen_fraction */
   PetscReal query_seconds, solve_seconds;

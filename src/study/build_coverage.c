@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Number of states in the box; contact tissue has suction as a further dimension. */
+/* Number of states in the box; contact tissue has suction as a further dimension. Twice as many with a range of F33. */
 enum { BONDED_STATES = 2048, CONTACT_STATES = 4096 };
 enum { BETWEEN_LOOKS = 32 }; /* states: a tenth of a millisecond, short for a solve, long for a look at messages */
 #define QUANTILE 0.95
@@ -104,6 +104,7 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
                                   LamMeanwhile meanwhile, LamCoverage *coverage)
 {
   const PetscBool contact = LamCellsPart(scene->micro.interface);
+  const PetscBool axial = (PetscBool)(scene->sample.F33_max > scene->sample.F33_min);
   PetscReal *errors, error, wedge;
   PetscInt *states, n = 0;
   LamTable table;
@@ -111,7 +112,8 @@ PetscErrorCode LamCoverageCompute(const LamScene *scene, const LamShard *shard, 
 
   PetscFunctionBeginUser;
   *coverage = (LamCoverage){0};
-  PetscCall(LamShardStates(scene, shard, contact ? CONTACT_STATES : BONDED_STATES, &coverage->states, &states));
+  PetscCall(LamShardStates(scene, shard, (contact ? CONTACT_STATES : BONDED_STATES) * (axial ? 2 : 1),
+                           &coverage->states, &states));
   PetscCall(LamSampleWedge(&scene->micro, &wedge));
   PetscCall(LamDatabaseGetTable(database, &table));
   PetscCall(PetscMalloc2(coverage->states, &errors, coverage->states, &needs));

@@ -9,6 +9,7 @@
 */
 #include "build.h"
 #include <lamella/tissue.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -50,11 +51,13 @@ void LamSampleLoad(const LamScene *scene, PetscReal wedge, PetscInt64 index, Lam
   const PetscReal turgor = Between(box->turgor_min, box->turgor_max, RadicalInverse(index + 1, 7));
 
   *load = LamLoadOfStrains(first, second, angle, turgor, scene->cohesion);
+  if (box->F33_max > box->F33_min)
+    load->F[8] = PetscExpReal(Between(log(box->F33_min), log(box->F33_max), RadicalInverse(index + 1, 11)));
 }
 
 /* ---- shards ---- */
 
-enum { COORDINATES = 4 }; /* U11, U22, U12, turgor */
+enum { COORDINATES = 5 }; /* U11, U22, U12, turgor, ln F33 */
 
 typedef struct {
   PetscInt number;
@@ -119,8 +122,10 @@ static State StateOf(const LamScene *scene, PetscReal wedge, PetscInt number)
   LamLoad load;
 
   LamSampleLoad(scene, wedge, number, &load);
-  return (State){
-      number, {load.F[0], load.F[4], load.F[1], range > 0 ? strain * (load.turgor - box->turgor_min) / range : 0}, 0};
+  return (State){number,
+                 {load.F[0], load.F[4], load.F[1], range > 0 ? strain * (load.turgor - box->turgor_min) / range : 0,
+                  log(load.F[8])},
+                 0};
 }
 
 PetscErrorCode LamShardStates(const LamScene *scene, const LamShard *shard, PetscInt asked, PetscInt *n,

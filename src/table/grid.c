@@ -14,6 +14,8 @@
 #define CONTACT_STEP 0.08
 #define TAU_STEP 0.75
 #define SUCTION_SCALE (1.0 / 32) /* times the largest suction */
+#define Z_STEP 0.135             /* of ln F33, as of strains; docs/results/verification.md, The response table */
+enum { LEAST_Z_CELLS = 2 };      /* three knots: slopes along z are those of a parabola */
 enum { FREE_KNOTS = 17 };
 
 /* Defaults for scenes without a sample box. */
@@ -24,7 +26,7 @@ static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25}
 
 PetscBool LamKeyIsNode(PetscInt64 key)
 {
-  return (PetscBool)(key >= LAM_NODE_KEY && key < LAM_NODE_KEY + ((PetscInt64)1 << 54));
+  return (PetscBool)(key >= LAM_NODE_KEY && key < 2 * LAM_NODE_KEY);
 }
 
 PetscBool LamKeyIsFreeCell(PetscInt64 key)
@@ -36,7 +38,7 @@ PetscBool LamKeyIsFreeCell(PetscInt64 key)
 
 PetscInt64 LamNodeKeyOf(const LamNodePlace *place)
 {
-  PetscInt64 code = 0;
+  PetscInt64 code = place->z;
 
   for (int k = 0; k < 3; k++) code = (code << 14) | (PetscInt64)(place->i[k] + LAM_GRID_REACH);
   return LAM_NODE_KEY | (code << 12) | (PetscInt64)place->j;
@@ -45,7 +47,7 @@ PetscInt64 LamNodeKeyOf(const LamNodePlace *place)
 LamNodePlace LamNodePlaceOf(PetscInt64 key)
 {
   const PetscInt64 code = key & (LAM_NODE_KEY - 1);
-  LamNodePlace place = {.j = (int)(code & 4095)};
+  LamNodePlace place = {.j = (int)(code & 4095), .z = (int)(code >> 54)};
 
   for (int k = 0; k < 3; k++) place.i[k] = (int)((code >> (40 - 14 * k)) & 16383) - LAM_GRID_REACH;
   return place;
@@ -84,12 +86,12 @@ PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
 
   PetscFunctionBeginUser;
   PetscCheck(LamKeyIsNode(key), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "key %lld is not of a node", (long long)key);
-  *load = (LamLoad){.turgor = grid->turgor};
+  *load = (LamLoad){.F[8] = LamGridF33(grid, place.z), .turgor = grid->turgor};
   if (grid->contact) {
     const PetscReal s = LamGridSuction(grid, place.j);
-    PetscReal strain[3] = {0};
+    PetscReal strain[6];
 
-    if (grid->free.n) LamFreeCellStrain(&grid->free, s, strain);
+    LamGridFreeStrain(grid, s, place.z - 1, strain);
     shift += strain[0];
     load->cohesion = grid->cohesion;
     load->turgor = s - grid->cohesion;
@@ -98,7 +100,6 @@ PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
   /* no F has these strains: return an F that a solver rejects */
   if (!LamLatticeStretch(&grid->axes, x, U)) U[0] = U[1] = U[2] = U[3] = 0;
   for (int i = 0; i < 4; i++) load->F[3 * (i / 2) + i % 2] = U[i];
-  load->F[8] = 1;
   PetscFunctionReturn(0);
 }
 
@@ -162,9 +163,11 @@ static void LayOutStrains(const LamScene *scene, const LamSample *box, LamGrid g
 
 static PetscErrorCode SolveFreeCell(LamGrid g, const LamMicrostructure *micro, LamResponder solver, LamFreeCell *cell)
 {
+  const LamFreePlanes planes = {g->z_cells + 1, g->z_min, g->z_step};
+
   PetscFunctionBeginUser;
   PetscCall(LamFreeCellMake(micro, g->cohesion, LamGridSuction(g, 0), LamGridSuction(g, LAM_ROOT * g->tau_cells),
-                            g->suction_scale, FREE_KNOTS, solver, cell));
+                            g->suction_scale, FREE_KNOTS, &planes, solver, cell));
   PetscFunctionReturn(0);
 }
 
@@ -190,15 +193,26 @@ static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box,
   PetscFunctionReturn(0);
 }
 
-/* Knot m of the free cell lies at j = m 64 cells / (knots - 1), an integer. */
+static void LayOutF33(const LamSample *box, LamGrid g)
+{
+  const PetscReal range = log(box->F33_max / box->F33_min);
+
+  g->z_cells = PetscMax(LEAST_Z_CELLS, (PetscInt)PetscCeilReal(range / Z_STEP - 1e-9));
+  g->z_min = log(box->F33_min);
+  g->z_step = range / (PetscReal)g->z_cells;
+}
+
+/* Knot m of the free cell lies at j = m 64 cells / (knots - 1), an integer; plane after plane. */
 static PetscErrorCode MakeFreeKeys(LamGrid g)
 {
   const int reach = LAM_GRID_REACH - 1;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(g->free.n + 1, &g->free_keys));
-  for (PetscInt m = 0; m < g->free.n; m++) {
-    const LamNodePlace place = {{reach, reach, reach}, (int)(m * LAM_ROOT * g->tau_cells / (g->free.n - 1))};
+  PetscCall(PetscMalloc1(LamFreeCellStates(&g->free) + 1, &g->free_keys));
+  for (PetscInt m = 0; m < LamFreeCellStates(&g->free); m++) {
+    const LamNodePlace place = {.i = {reach, reach, reach},
+                                .j = (int)(m % g->free.n * LAM_ROOT * g->tau_cells / (g->free.n - 1)),
+                                .z = g->z_cells ? (int)(1 + m / g->free.n) : 0};
 
     g->free_keys[m] = LamNodeKeyOf(&place);
   }
@@ -239,6 +253,7 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid
   *grid = g;
   PetscCall(SetTissue(micro, g));
   LayOutStrains(scene, box, g);
+  if (box->F33_max > box->F33_min) LayOutF33(box, g);
   if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
   PetscCall(MakeFreeKeys(g));
   PetscFunctionReturn(0);
@@ -257,7 +272,7 @@ PetscErrorCode LamGridDestroy(LamGrid *grid)
 PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *keys[], const LamResponse *records[])
 {
   PetscFunctionBeginUser;
-  *n = grid->free.records ? grid->free.n : 0;
+  *n = grid->free.records ? LamFreeCellStates(&grid->free) : 0;
   *keys = grid->free_keys;
   *records = grid->free.records;
   PetscFunctionReturn(0);
@@ -266,7 +281,7 @@ PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const PetscInt64 *ke
 PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *keys[])
 {
   PetscFunctionBeginUser;
-  *n = grid->free.n;
+  *n = LamFreeCellStates(&grid->free);
   *keys = grid->free_keys;
   PetscFunctionReturn(0);
 }
@@ -295,6 +310,9 @@ PetscErrorCode LamGridGetText(LamGrid g, char **text)
 
   PetscFunctionBeginUser;
   object = json_pack("{s:f, s:f, s:f}", "origin", g->origin, "step", g->step, "turgor", g->turgor);
+  if (g->z_cells)
+    json_object_update_new(object, json_pack("{s:f, s:f, s:I}", "z_min", g->z_min, "z_step", g->z_step, "z_cells",
+                                             (json_int_t)g->z_cells));
   if (g->contact) {
     PetscCall(LamFreeCellToJSON(&g->free, &cell));
     json_object_update_new(object, json_pack("{s:f, s:f, s:f, s:f, s:I, s:o}", "cohesion", g->cohesion, "suction_scale",
@@ -320,6 +338,19 @@ static PetscBool ReadSuction(json_t *object, LamGrid g)
                      g->tau_cells < 4096 / LAM_ROOT);
 }
 
+/* Of grids with the axis F33 alone. */
+static PetscBool ReadF33(json_t *object, LamGrid g)
+{
+  json_int_t cells;
+
+  if (!json_object_get(object, "z_cells")) return PETSC_TRUE;
+  if (json_unpack(object, "{s:F, s:F, s:I}", "z_min", &g->z_min, "z_step", &g->z_step, "z_cells", &cells))
+    return PETSC_FALSE;
+  g->z_cells = (PetscInt)PetscMin(PetscMax(cells, 0), LAM_MOST_Z_CELLS + 1);
+  return (PetscBool)(g->z_step > 0 && g->z_cells >= LEAST_Z_CELLS && g->z_cells <= LAM_MOST_Z_CELLS &&
+                     fabs(g->z_min) < LAM_GRID_REACH);
+}
+
 /* Whether the free cell's suctions and cohesion are those of the grid. */
 static PetscBool FreeCellFits(const struct LamGrid_s *g)
 {
@@ -328,6 +359,7 @@ static PetscBool FreeCellFits(const struct LamGrid_s *g)
 
   if (!free_cell->n) return PETSC_TRUE;
   return (PetscBool)(free_cell->scale == g->suction_scale && free_cell->cohesion == g->cohesion &&
+                     free_cell->planes == g->z_cells + 1 && free_cell->z_step == g->z_step &&
                      fabs(free_cell->suction[0] - LamGridSuction(g, 0)) < 1e-9 * last &&
                      fabs(free_cell->suction[free_cell->n - 1] - last) < 1e-9 * last);
 }
@@ -340,6 +372,7 @@ static PetscErrorCode ReadText(const char path[], json_t *object, LamGrid g)
 
   PetscFunctionBeginUser;
   if (good && g->contact) good = ReadSuction(object, g);
+  if (good) good = ReadF33(object, g);
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not the layout of a grid; the file is damaged",
              path, LAM_GRID_NAME);
   if (g->contact) PetscCall(LamFreeCellFromJSON(path, json_object_get(object, "free_cell"), &g->free));

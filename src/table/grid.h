@@ -6,6 +6,7 @@
     contact  x_k = a(s) + unit i_k,  s = scale (exp(tau) - 1),  tau = tau_min + tau_unit j
   with a(s) the strain at which free cells touch (free_cell.h). One unit is 2^-LAM_FINEST of a root cell. The level of a
   node is the coarsest that contains all its i. Where the three directions are equivalent, i is sorted, ascending.
+  A grid may also have the axis z = ln F33, with knots z_min + z_step k, k = 0 .. z_cells, not refined; a depends on it.
 */
 #ifndef LAM_GRID_H
 #define LAM_GRID_H
@@ -14,7 +15,7 @@
 #include "free_cell.h"
 #include "lattice_strain.h"
 
-enum { LAM_FINEST = 6, LAM_ROOT = 1 << LAM_FINEST, LAM_GRID_REACH = 8192 };
+enum { LAM_FINEST = 6, LAM_ROOT = 1 << LAM_FINEST, LAM_GRID_REACH = 8192, LAM_MOST_Z_CELLS = 62 };
 
 struct LamGrid_s {
   PetscBool contact, symmetric;
@@ -25,12 +26,14 @@ struct LamGrid_s {
   PetscReal cohesion;     /* of contact nodes; their turgor is s - cohesion */
   PetscReal suction_scale, tau_min, tau_step;
   PetscInt tau_cells; /* root intervals along tau; 0: bonded */
-  LamFreeCell free;   /* n = 0: none */
+  PetscReal z_min, z_step;
+  PetscInt z_cells; /* intervals of ln F33; 0: F33 = 1 */
+  LamFreeCell free; /* n = 0: none */
   PetscInt64 *free_keys;
 };
 
 typedef struct {
-  int i[3], j;
+  int i[3], j, z; /* z: 1 + knot of ln F33; 0: the grid has no such axis */
 } LamNodePlace;
 
 PetscInt64 LamNodeKeyOf(const LamNodePlace *place);
@@ -48,6 +51,20 @@ static inline PetscReal LamGridTau(const struct LamGrid_s *grid, PetscReal s)
 static inline PetscReal LamGridSuction(const struct LamGrid_s *grid, PetscInt j)
 {
   return grid->suction_scale * expm1(grid->tau_min + grid->tau_step * (PetscReal)j / LAM_ROOT);
+}
+/* a(s) and its derivatives, 0 without free cells: a, a_s, a_ss, a_z, a_zz, a_sz; w: knot of ln F33, from 0 on. */
+static inline void LamGridFreeStrain(const struct LamGrid_s *grid, PetscReal s, PetscReal w, PetscReal strain[6])
+{
+  for (int k = 0; k < 6; k++) strain[k] = 0;
+  if (!grid->free.n) return;
+  if (grid->z_cells)
+    LamFreeCellStrains(&grid->free, s, w, strain);
+  else
+    LamFreeCellStrain(&grid->free, s, strain);
+}
+static inline PetscReal LamGridF33(const struct LamGrid_s *grid, int z)
+{
+  return z ? exp(grid->z_min + grid->z_step * (PetscReal)(z - 1)) : 1;
 }
 
 #endif

@@ -84,7 +84,7 @@ static inline void Contract(PetscInt n, PetscInt order, const Functions u0, cons
   jet->hessian[5] += Dot(n, u0[1], line[0][1]);
 }
 
-static inline void AddCubic(const LamJet corner[8], const Functions u[3], LamJet *sum)
+static inline void AddCubic(const LamJet corner[8], const Functions u[3], PetscInt order, LamJet *sum)
 {
   PetscReal data[4][4][4]; /* in each direction: values at the two ends, slopes at the two ends */
 
@@ -101,7 +101,7 @@ static inline void AddCubic(const LamJet corner[8], const Functions u[3], LamJet
     data[k][j + 2][i + 2] = at->hessian[5];
     data[k + 2][j + 2][i + 2] = at->third;
   }
-  Contract(4, 2, u[0], u[1], u[2], &data[0][0][0], sum);
+  Contract(4, order, u[0], u[1], u[2], &data[0][0][0], sum);
 }
 
 /* d_0, d_1 of the edges along direction k: known second derivatives at the ends minus those of the cubic. */
@@ -119,23 +119,40 @@ static inline void CurvatureSurplus(const LamJet corner[8], PetscInt k, PetscRea
   }
 }
 
-void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
+static inline void AddBubbles(const LamJet corner[8], PetscReal h, const PetscReal t[3], PetscInt order,
+                              const Functions u[3], LamJet *sum)
 {
-  Functions u[3], q;
+  Functions q;
 
-  for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
-  AddCubic(corner, u, sum);
   for (PetscInt k = 0; k < 3; k++) {
     PetscReal surplus[8];
     LamJet jet = {0};
 
     CurvatureSurplus(corner, k, h, surplus);
     BubbleFunctions(t[k], h, q);
-    Contract(2, 2, k == 0 ? q : u[0], k == 1 ? q : u[1], k == 2 ? q : u[2], surplus, &jet);
+    Contract(2, order, k == 0 ? q : u[0], k == 1 ? q : u[1], k == 2 ? q : u[2], surplus, &jet);
     sum->value += jet.value;
     for (PetscInt i = 0; i < 3; i++) sum->gradient[i] += jet.gradient[i];
-    for (PetscInt i = 0; i < 6; i++) sum->hessian[i] += jet.hessian[i];
+    for (PetscInt i = 0; i < 6 && order > 1; i++) sum->hessian[i] += jet.hessian[i];
   }
+}
+
+void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
+{
+  Functions u[3];
+
+  for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
+  AddCubic(corner, u, 2, sum);
+  AddBubbles(corner, h, t, 2, u, sum);
+}
+
+void LamHermiteQuinticSlope(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
+{
+  Functions u[3];
+
+  for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
+  AddCubic(corner, u, 1, sum);
+  AddBubbles(corner, h, t, 1, u, sum);
 }
 
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)
@@ -143,7 +160,7 @@ void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], 
   Functions u[3];
 
   for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
-  AddCubic(corner, u, sum);
+  AddCubic(corner, u, 2, sum);
 }
 
 void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3])

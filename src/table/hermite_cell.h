@@ -25,7 +25,9 @@ typedef struct {
   cube.
 */
 void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
-/* The same without bubbles. */
+/* The same without Hessian. */
+void LamHermiteQuinticSlope(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
+/* The first without bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /*
   Root mean squares over the edges of each direction k, in units of a slope. bend[k]: h times the known second

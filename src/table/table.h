@@ -10,6 +10,8 @@
   cubic, the second derivatives a blend. All are continuously differentiable in tau, independently of the states of
   other columns. A missing state at the end of a root interval counts as 0 on finer levels. A cell is complete where all
   eight columns have states on both sides; the finest complete cell gives the error estimate.
+  With the axis z = ln F33 a node is a sheet: a line of states along suction (bonded: one state) at each of some knots
+  of z. Lines are columns; between two of them Phi is interpolated along z as along suction, from dPhi/dz and d2Phi/dz2.
 */
 #ifndef LAM_TABLE_H
 #define LAM_TABLE_H
@@ -24,7 +26,7 @@
 
 /* The surplus of one solved state. */
 typedef struct {
-  int j;
+  int j, z;           /* as in LamNodePlace */
   PetscBool good;     /* converged, stable, branch 0 */
   PetscBool has_data; /* else all numbers below but `data` are 0 */
   PetscInt data;      /* index in source->data */
@@ -38,13 +40,22 @@ typedef struct {
   PetscReal turgor_gradient[3], turgor_tau; /* derivatives of turgor1 */
 } LamTableState;
 
+/* Besides, with the axis z = ln F33: derivatives at fixed grid coordinates. */
+typedef struct {
+  PetscReal first, second, gradient[3];     /* dPhi/dz, d2Phi/dz2 on the side of larger z, d2Phi/dy_k dz */
+  PetscReal second_minus;                   /* d2Phi/dz2 on the side of smaller z */
+  PetscReal mixed, turgor;                  /* d2Phi/dtau dz, d2Phi/dp dz */
+  PetscReal gradient_tau[3], second_tau[2]; /* slopes of gradient, second and second_minus along suction, ... */
+  PetscReal hessian[6], minus[3];           /* ... of Phi's second derivatives along z, from differences */
+} LamTableAxial;
+
 /* Computed so far of a node's states: nothing; all but mixed third derivatives and slopes along suction; all. */
 enum { LAM_NODE_RAW, LAM_NODE_SUBTRACTED, LAM_NODE_MADE };
 
 typedef struct {
   int i[3];
   int level;
-  PetscInt first, count; /* states, ascending in j */
+  PetscInt first, count; /* states, ascending in z, then j */
   atomic_int stage;
 } LamTableNode;
 
@@ -75,11 +86,12 @@ struct LamTable_s {
   PetscInt state_count, node_count;
   PetscInt *data;        /* [state_count] indices in source->data */
   LamTableState *states; /* written under the lock; valid to read when their node's stage is LAM_NODE_MADE */
+  LamTableAxial *axial;  /* [state_count] likewise; NULL: no axis F33 */
   LamTableNode *nodes;   /* ascending in level */
   LamPlaceMap node_map;
   mtx_t lock;
   int levels;          /* finest level of the nodes, plus 1 */
-  PetscInt *free_data; /* [grid->free.n] indices in source->data; -1: missing */
+  PetscInt *free_data; /* [LamFreeCellStates] indices in source->data; -1: missing */
 };
 
 /* A point in the grid's coordinates, with its axes sorted where the grid is symmetric. */
@@ -88,6 +100,8 @@ typedef struct {
   int axis[3];      /* axis k here is lattice direction axis[k] */
   PetscReal tau, v; /* v: along tau, in units */
   int root;         /* first j of its root interval */
+  PetscReal w;      /* along ln F33, in knots from the first */
+  int z;            /* that of LamNodePlace, of the knot below; 0: no such axis */
   PetscReal step;   /* d: turgor minus the grid's turgor at this suction */
   PetscReal s;
 } LamTablePoint;
@@ -98,12 +112,13 @@ typedef struct {
   PetscReal tau1, tau2, gradient_tau[3];
   LamJet turgor1; /* derivative of phi in d: value and gradient */
   PetscReal turgor1_tau, turgor2;
+  PetscReal z1, z2, tau_z, gradient_z[3], turgor1_z; /* along ln F33 */
   /*
     Input of the error estimate, components of the gradient. bend, turn: LamHermiteSizes of the level's part on the
     finest complete cell. bump: difference between the cubic and the line along tau, between two states of a column;
-    root of the sum of squares over the cells of all levels.
+    root of the sum of squares over the cells of all levels. bump_z: likewise along ln F33.
   */
-  PetscReal bend[3], turn[3], bump[3];
+  PetscReal bend[3], turn[3], bump[3], bump_z[3];
 } LamTableSum;
 
 /* ---- table_make.c ---- */
@@ -139,8 +154,9 @@ static inline PetscInt64 LamPlaceMapKey(const int i[3])
 }
 
 /* ---- table_state.c ---- */
-/* Phi and its derivatives from a record; `data`: its index in the node set. */
-void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state);
+/* Phi and its derivatives from a record; `data`: its index in the node set; axial: NULL without the axis F33. */
+void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state,
+                       LamTableAxial *axial);
 
 /* ---- table_surplus.c ---- */
 /* Computes node n up to stage LAM_NODE_MADE. Thread-safe. */
@@ -162,12 +178,24 @@ const LamTableCell *LamTableCellAt(LamTable table, int level, const int i[3], La
 /* The same for the cell of a level that contains the point. */
 const LamTableCell *LamTableFindCell(LamTable table, const LamTablePoint *point, int level, LamTableCell *cell);
 
-/* ---- table_sum.c ---- */
-/* Whether all corners have states on both sides of the point, or float. *good: all these states are good. */
-PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
+/* ---- table_column.c ---- */
+/* Lines of states on both sides of the point: one, or with the axis F33 two. */
+static inline int LamTableLines(LamTable table)
+{
+  return table->grid->z_cells ? 2 : 1;
+}
+/* The plane of the free cell that goes with a line. */
+static inline PetscInt LamTablePlane(const LamTablePoint *point, int line)
+{
+  return PetscMax(0, point->z - 1) + line;
+}
 /* The states of a node's column on both sides of the point; NULL: missing. */
-void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point,
+void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoint *point, int line,
                      const LamTableState *ends[2]);
+
+/* ---- table_sum.c ---- */
+/* Whether all corners have states on all sides of the point, or float. *good: all these states are good. */
+PetscBool LamTableCellIsComplete(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool *good);
 /* Whether a column's value at the point depends on end e of its bracket: not if the other end is at its suction. */
 static inline PetscBool LamTableRestsOn(const LamTableState *const ends[2], int e, const LamTablePoint *point)
 {

@@ -1,5 +1,5 @@
 /*
-  Quantities that do not follow from the potential: out-of-plane stress and indicators.
+  Quantities that do not follow from the potential: indicators, and without the axis F33 the out-of-plane stress.
 
   P33 + p J (contact: P33 - g J) is interpolated from its value and gradient at the corners of the finest complete cell.
   Indicators are interpolated linearly between the corners, so that they keep their bounds: a share stays between 0 and
@@ -17,62 +17,84 @@ typedef struct {
   const int *order;       /* axis k of the point is axis order[k] of the node */
   PetscReal weight, side; /* side: factor of `weight` along suction */
   int corner, end;
+  PetscReal F33;
 } Around;
 
+enum { MOST_AROUND = 32 }; /* corners, two ends of suction, two of F33 */
+
 typedef struct {
-  Around at[16];
+  Around at[MOST_AROUND];
   int n;
   PetscReal tau_step[8]; /* of the corner's interval */
 } Surroundings;
 
 static void AddAround(Surroundings *around, const LamNodeData *data, const int *order, PetscReal weight, PetscReal side,
-                      int corner, int end)
+                      int corner, int end, PetscReal F33)
 {
-  around->at[around->n++] = (Around){data, order, weight * side, side, corner, end};
+  around->at[around->n++] = (Around){data, order, weight * side, side, corner, end, F33};
+}
+
+/* A line of the corner's states: its F33 and its weight, linear along ln F33. */
+typedef struct {
+  int number;
+  PetscReal F33, weight;
+} Line;
+
+static Line LineOf(LamTable table, const LamTablePoint *point, int number)
+{
+  const PetscReal t = point->w - (point->z - 1);
+
+  if (!table->grid->z_cells) return (Line){0, 1, 1};
+  return (Line){number, LamGridF33(table->grid, point->z + number), number ? t : 1 - t};
 }
 
 /* Adds the two knots of the free cell around the point; PETSC_FALSE if the file lacks one of them. */
-static PetscBool AddFree(LamTable table, const LamTablePoint *point, PetscReal weight, int corner, Surroundings *around)
+static PetscBool AddFree(LamTable table, const LamTablePoint *point, Line line, PetscReal weight, int corner,
+                         Surroundings *around)
 {
   const struct LamGrid_s *grid = table->grid;
+  const PetscInt first = LamTablePlane(point, line.number) * grid->free.n;
   const PetscReal share = point->v / (LAM_ROOT * grid->tau_cells) * (PetscReal)(grid->free.n - 1);
   const PetscInt m = PetscMin((PetscInt)share, grid->free.n - 2);
 
   around->tau_step[corner] = grid->tau_step * (PetscReal)grid->tau_cells / (PetscReal)(grid->free.n - 1);
   for (PetscInt e = 0; e < 2; e++) {
-    const PetscInt d = table->free_data[m + e];
+    const PetscInt d = table->free_data[first + m + e];
     const PetscReal t = share - (PetscReal)m;
 
     if (d < 0) return PETSC_FALSE;
-    AddAround(around, &table->source->data[d], LamAxisOrder[0], weight, e ? t : 1 - t, corner, (int)e);
+    AddAround(around, &table->source->data[d], LamAxisOrder[0], line.weight * weight, e ? t : 1 - t, corner, (int)e,
+              line.F33);
   }
   return PETSC_TRUE;
 }
 
-static void AddNode(LamTable table, const LamTableCell *cell, int corner, const LamTablePoint *point, PetscReal weight,
-                    Surroundings *around)
+static void AddNode(LamTable table, const LamTableCell *cell, int corner, const LamTablePoint *point, Line line,
+                    PetscReal weight, Surroundings *around)
 {
   const LamTableNode *node = &table->nodes[cell->node[corner]];
   const int *order = LamAxisOrder[cell->order[corner]];
   const LamTableState *ends[2];
   PetscReal t;
 
-  LamTableBracket(table, node, point, ends);
+  LamTableBracket(table, node, point, line.number, ends);
+  weight *= line.weight;
   if (!table->grid->contact) {
-    AddAround(around, &table->source->data[ends[0]->data], order, weight, 1, corner, 0);
+    AddAround(around, &table->source->data[ends[0]->data], order, weight, 1, corner, 0, line.F33);
     return;
   }
   t = ends[0] && ends[1] ? (point->v - ends[0]->j) / (ends[1]->j - ends[0]->j) : !ends[0];
   around->tau_step[corner] = ends[0] && ends[1] ? table->grid->tau_step * (ends[1]->j - ends[0]->j) / LAM_ROOT : 0;
   for (int e = 0; e < 2; e++)
-    if (ends[e]) AddAround(around, &table->source->data[ends[e]->data], order, weight, e ? t : 1 - t, corner, e);
+    if (ends[e])
+      AddAround(around, &table->source->data[ends[e]->data], order, weight, e ? t : 1 - t, corner, e, line.F33);
 }
 
-/* Adds the states at the corners of the cell; cell NULL: floating cells. */
-static PetscBool Surround(LamTable table, const LamTableCell *cell, const LamTablePoint *point, Surroundings *around)
+/* Adds those of a line at the corners of the cell; cell NULL: floating cells. */
+static PetscBool AddLine(LamTable table, const LamTableCell *cell, const LamTablePoint *point, Line line,
+                         Surroundings *around)
 {
-  around->n = 0;
-  if (!cell) return AddFree(table, point, 1, 0, around);
+  if (!cell) return AddFree(table, point, line, 1, 0, around);
   for (int c = 0; c < 8; c++) {
     PetscReal weight = 1;
 
@@ -82,10 +104,18 @@ static PetscBool Surround(LamTable table, const LamTableCell *cell, const LamTab
       weight *= c >> k & 1 ? t : 1 - t;
     }
     if (cell->node[c] == LAM_NODE_FLOATING) {
-      if (!AddFree(table, point, weight, c, around)) return PETSC_FALSE;
+      if (!AddFree(table, point, line, weight, c, around)) return PETSC_FALSE;
     } else
-      AddNode(table, cell, c, point, weight, around);
+      AddNode(table, cell, c, point, line, weight, around);
   }
+  return PETSC_TRUE;
+}
+
+static PetscBool Surround(LamTable table, const LamTableCell *cell, const LamTablePoint *point, Surroundings *around)
+{
+  around->n = 0;
+  for (int number = 0; number < LamTableLines(table); number++)
+    if (!AddLine(table, cell, point, LineOf(table, point, number), around)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -216,7 +246,7 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
   Interpolation from the corners' values v: sum of weight (v - base) / size over the corners, times the point's size,
   plus the point's base.
     MEAN          size 1, base 0
-    TENSION       size: norm of the walls' stress P + p J F^-T, plus a floor; base 0
+    TENSION       size: norm of the walls' stress P + p J F^-T in the plane, plus a floor; base 0
     TRACTION      size as TENSION; base: normal traction of the walls' stress on the face family, minus turgor
     MAX_TRACTION  size as TENSION; base: the largest of the three tractions.
                   Contact: base: cohesion, the traction of open places and the upper bound; size: the distance of the
@@ -242,10 +272,10 @@ typedef struct {
 
 /* F, P: in the plane; cohesion: NULL for bonded tissue; scale: of stresses. Face k has the normal F^-T n_k and the
    traction P n_k over the face's stretch. */
-static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4], const PetscReal P[4], PetscReal turgor,
-                               const PetscReal *cohesion, PetscReal scale)
+static WallStress WallStressOf(const LamLatticeAxes *axes, const PetscReal F[4], PetscReal F33, const PetscReal P[4],
+                               PetscReal turgor, const PetscReal *cohesion, PetscReal scale)
 {
-  const PetscReal cofactor[4] = {F[3], -F[2], -F[1], F[0]};
+  const PetscReal cofactor[4] = {F33 * F[3], -F33 * F[2], -F33 * F[1], F33 * F[0]};
   WallStress w = {.most = -PETSC_INFINITY};
   PetscReal S[4], square = 0;
 
@@ -284,7 +314,7 @@ static PetscReal BaseFor(const WallStress *stress, LamNodeRule rule, int k)
 /* The surrounding states and their wall stresses. */
 typedef struct {
   Surroundings around;
-  WallStress stress[16], here;
+  WallStress stress[MOST_AROUND], here;
 } Neighbours;
 
 /* (value - base) / size of indicator i of the n-th state; k: component in the point's axes. */
@@ -384,12 +414,13 @@ void LamTableIndicators(LamTable table, const LamTablePoint *point, const LamTab
     r->indicators_trusted = PETSC_FALSE;
     return;
   }
-  near.here = WallStressOf(axes, F, P, r->load.turgor, contact ? &r->load.cohesion : NULL, table->scale.plane);
+  near.here = WallStressOf(axes, F, table->grid->z_cells ? r->load.F[8] : 1, P, r->load.turgor,
+                           contact ? &r->load.cohesion : NULL, table->scale.plane);
   for (int n = 0; n < near.around.n; n++) {
     const LamNodeData *data = near.around.at[n].data;
 
-    near.stress[n] =
-        WallStressOf(axes, data->F, data->P, data->turgor, contact ? &data->cohesion : NULL, table->scale.plane);
+    near.stress[n] = WallStressOf(axes, data->F, near.around.at[n].F33, data->P, data->turgor,
+                                  contact ? &data->cohesion : NULL, table->scale.plane);
   }
   FillMeans(&near, point->axis, r);
   r->floating_cells = Agreed(&near.around, offsetof(LamNodeData, floating_cells));

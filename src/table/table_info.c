@@ -7,8 +7,8 @@
 enum { TRIED = 16 }; /* suctions tested in a root interval */
 
 typedef struct {
-  PetscInt nodes[LAM_FINEST + 1];                               /* states by the level of their place */
-  PetscInt complete[LAM_FINEST + 1], mixed[LAM_FINEST + 1];     /* cells, counted per root interval of suction */
+  PetscInt nodes[LAM_FINEST + 1];                           /* states by the level of their place */
+  PetscInt complete[LAM_FINEST + 1], mixed[LAM_FINEST + 1]; /* cells, counted per root interval of suction and of F33 */
   PetscInt unstable, other_branch, failed, floating, free_cell; /* states */
   LamRange strain, suction;                                     /* of good states */
 } Census;
@@ -37,19 +37,20 @@ static void CountNodes(LamTable table, Census *c)
   for (PetscInt n = 0; n < table->node_count; n++)
     for (PetscInt s = 0; s < table->nodes[n].count; s++)
       CountState(table, &LamTableStates(table, &table->nodes[n])[s], table->nodes[n].level, c);
-  for (PetscInt m = 0; m < table->grid->free.n; m++) c->free_cell += table->free_data[m] >= 0;
+  for (PetscInt m = 0; m < LamFreeCellStates(&table->grid->free); m++) c->free_cell += table->free_data[m] >= 0;
 }
 
 /* ---- cells ---- */
 
-/* Whether a cell is complete at some suction of a root interval; *mixed: not all of these states are good. */
-static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, PetscBool *mixed)
+/* Whether a cell is complete at some suction of a root interval, and between knots z and z + 1 of F33; *mixed: not all
+   of these states are good. */
+static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, int z, PetscBool *mixed)
 {
   PetscBool complete = PETSC_FALSE, good;
 
   *mixed = PETSC_FALSE;
   for (int k = 0; k < (table->grid->contact ? TRIED : 1) && !*mixed; k++) {
-    const LamTablePoint point = {.v = root + (k + 0.5) * LAM_ROOT / TRIED, .root = root};
+    const LamTablePoint point = {.v = root + (k + 0.5) * LAM_ROOT / TRIED, .root = root, .z = z};
 
     if (!LamTableCellIsComplete(table, cell, &point, &good)) continue;
     complete = PETSC_TRUE;
@@ -61,11 +62,12 @@ static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, 
 static void CountCell(LamTable table, const LamTableCell *cell, Census *c)
 {
   const int intervals = table->grid->contact ? (int)table->grid->tau_cells : 1;
+  const int knots = PetscMax(1, (int)table->grid->z_cells);
 
-  for (int j = 0; j < intervals; j++) {
+  for (int n = 0; n < intervals * knots; n++) {
     PetscBool mixed;
 
-    if (!IsComplete(table, cell, LAM_ROOT * j, &mixed)) continue;
+    if (!IsComplete(table, cell, LAM_ROOT * (n % intervals), 1 + n / intervals, &mixed)) continue;
     c->complete[cell->level]++;
     c->mixed[cell->level] += mixed;
   }
@@ -132,12 +134,18 @@ static json_t *GridToJSON(const struct LamGrid_s *grid, PetscReal MPa)
       json_pack("{s:f, s:f, s:b}", "step", grid->step, "origin", grid->origin, "symmetric", (int)grid->symmetric);
   LamRange suction, strain = {PETSC_INFINITY, PETSC_NINFINITY};
 
+  if (grid->z_cells) {
+    const LamRange F33 = {LamGridF33(grid, 1), LamGridF33(grid, 1 + (int)grid->z_cells)};
+
+    json_object_set_new(object, "F33", LamRangeToJSON(&F33, 1));
+    json_object_set_new(object, "F33_intervals", json_integer(grid->z_cells));
+  }
   if (!grid->contact) {
     json_object_set_new(object, "turgor", json_real(grid->turgor * MPa));
     return object;
   }
   suction = (LamRange){LamGridSuction(grid, 0), LamGridSuction(grid, LAM_ROOT * grid->tau_cells)};
-  for (PetscInt m = 0; m < grid->free.n; m++) LamRangeWiden(&strain, grid->free.strain[m]);
+  for (PetscInt m = 0; m < LamFreeCellStates(&grid->free); m++) LamRangeWiden(&strain, grid->free.strain[m]);
   json_object_set_new(object, "cohesion", json_real(grid->cohesion * MPa));
   json_object_set_new(object, "suction", LamRangeToJSON(&suction, MPa));
   json_object_set_new(object, "suction_intervals", json_integer(grid->tau_cells));

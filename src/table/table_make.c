@@ -1,6 +1,7 @@
 /*
-  Creation of a table from the records whose keys are nodes, sorted by level, place and suction. The surplus of a node
-  is computed when a cell first needs it (table_surplus.c), so that a table of a million nodes is available at once.
+  Creation of a table from the records whose keys are nodes, sorted by level, place, F33 and suction. The surplus of a
+  node is computed when a cell first needs it (table_surplus.c), so that a table of a million nodes is available at
+  once.
 */
 #include "table.h"
 #include <stdlib.h>
@@ -11,14 +12,22 @@
 typedef struct {
   PetscInt64 key;
   PetscInt data;
-  int level;
+  int level, z;
 } Entry;
+
+/* The key without z, so that the states of a place follow one another. */
+static PetscInt64 PlaceKey(const Entry *entry)
+{
+  return entry->key - ((PetscInt64)entry->z << 54);
+}
 
 static int CompareEntries(const void *first, const void *second)
 {
   const Entry *a = first, *b = second;
+  const PetscInt64 i = PlaceKey(a) >> 12, k = PlaceKey(b) >> 12; /* j is left out */
 
   if (a->level != b->level) return a->level - b->level;
+  if (i != k) return i < k ? -1 : 1;
   if (a->key != b->key) return a->key < b->key ? -1 : 1;
   return a->data < b->data ? -1 : a->data > b->data;
 }
@@ -31,6 +40,7 @@ static PetscBool IsPlace(const struct LamGrid_s *grid, const LamNodePlace *place
   for (int k = 0; k < 3; k++)
     if (i[k] < -reach || i[k] > reach) return PETSC_FALSE;
   if (grid->symmetric && (i[0] > i[1] || i[1] > i[2])) return PETSC_FALSE;
+  if (grid->z_cells ? place->z < 1 || place->z > grid->z_cells + 1 : place->z != 0) return PETSC_FALSE;
   return (PetscBool)(place->j <= LAM_ROOT * grid->tau_cells && !LamPlaceIsFloating(grid, i));
 }
 
@@ -45,10 +55,11 @@ static PetscErrorCode CollectEntries(LamTable table, PetscInt *n, Entry **entrie
     const LamNodePlace place = LamNodePlaceOf(source->data[d].key);
 
     if (!LamNodeIsFree(&place)) {
-      if (IsPlace(table->grid, &place)) (*entries)[(*n)++] = (Entry){source->data[d].key, d, LamNodeLevel(&place)};
+      if (IsPlace(table->grid, &place))
+        (*entries)[(*n)++] = (Entry){source->data[d].key, d, LamNodeLevel(&place), place.z};
       continue;
     }
-    for (PetscInt m = 0; m < table->grid->free.n; m++)
+    for (PetscInt m = 0; m < LamFreeCellStates(&table->grid->free); m++)
       if (table->grid->free_keys[m] == source->data[d].key) table->free_data[m] = d;
   }
   qsort(*entries, (size_t)*n, sizeof(Entry), CompareEntries);
@@ -64,6 +75,7 @@ static PetscErrorCode MakeNodes(LamTable table)
   PetscFunctionBeginUser;
   PetscCall(CollectEntries(table, &n, &entries));
   PetscCall(PetscMalloc1(n + 1, &table->states));
+  if (table->grid->z_cells) PetscCall(PetscMalloc1(n + 1, &table->axial));
   PetscCall(PetscMalloc1(n + 1, &table->nodes));
   PetscCall(PetscMalloc1(n + 1, &table->data));
   PetscCall(LamPlaceMapCreate((size_t)n, &table->node_map));
@@ -101,8 +113,8 @@ PetscErrorCode LamTableMake(const LamNodeSet *source, LamGrid grid, const LamMic
   t->grid = grid;
   t->uniform = (PetscBool)!micro->cell;
   t->scale = LamStressScaleOf(micro);
-  PetscCall(PetscMalloc1(t->grid->free.n + 1, &t->free_data));
-  for (PetscInt m = 0; m < t->grid->free.n; m++) t->free_data[m] = -1;
+  PetscCall(PetscMalloc1(LamFreeCellStates(&t->grid->free) + 1, &t->free_data));
+  for (PetscInt m = 0; m < LamFreeCellStates(&t->grid->free); m++) t->free_data[m] = -1;
   /* recursive, because computing a node computes nodes of coarser levels */
   PetscCheck(mtx_init(&t->lock, mtx_plain | mtx_recursive) == thrd_success, PETSC_COMM_SELF, PETSC_ERR_SYS,
              "the lock of a table cannot be made");
@@ -128,6 +140,7 @@ PetscErrorCode LamTableDestroy(LamTable *table)
   PetscCall(LamPlaceMapDestroy(&t->node_map));
   mtx_destroy(&t->lock);
   PetscCall(PetscFree(t->states));
+  PetscCall(PetscFree(t->axial));
   PetscCall(PetscFree(t->nodes));
   PetscCall(PetscFree(t->data));
   PetscCall(PetscFree(t->free_data));

@@ -4,10 +4,11 @@
   Algorithm
     Map F and suction to a point of the grid; sum the levels. The finest complete cell gives the error estimate, which
     decides whether the response is accepted. Then map back from (y, tau) to (x, s), and to stress and tangent:
-      Psi(F, p, g) = Phi(x, s) + d Phi_p(x, s) + d^2 Phi_pp / 2 + c J,   d = p - p0
+      Psi(F, p, g) = Phi(x, s) + d Phi_p(x, s) + d^2 Phi_pp / 2 + c J,   d = p - p0,   J = det F
       bonded   p0 the grid's turgor, c = -p;    contact   p0 = s - g0, g0 the grid's cohesion, c = g.
+    With the axis z = ln F33 Phi depends on it, too, and P33 = dPsi/dF33.
 */
-#include "table.h"
+#include "table_place.h"
 #include "rounded_load.h"
 #include <math.h>
 #include <stdarg.h>
@@ -38,20 +39,6 @@ enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8 };
 #define CONTACT_BEND 0.25
 #define CONTACT_BUMP 0.5
 
-/* The position of a query in the table, and the table's data there. */
-typedef struct {
-  LamLatticeState lattice;
-  LamTablePoint point;
-  PetscReal free_strain[3]; /* a, a', a'' */
-  PetscBool floating;
-  const LamTableCell *leaf; /* finest complete cell; NULL: none */
-  PetscBool good;           /* all its states are good */
-  LamTableSum sum;
-  PetscReal leaf_gradient[3]; /* of the sum up to the leaf */
-  const LamTableCell *child;  /* cell of the next finer level, incomplete; NULL: none */
-  LamTableCell cells[LAM_FINEST + 1];
-} Place;
-
 /* ---- position ---- */
 
 /* As printf, into the reason. */
@@ -79,7 +66,7 @@ static PetscReal OnFace(PetscReal u, PetscReal rounding)
   return fabs(u - nearest) < rounding ? nearest : u;
 }
 
-static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
+static PetscBool PlaceSuction(LamTable table, const LamLoad *load, LamTablePlace *place, LamResponse *r)
 {
   const struct LamGrid_s *grid = table->grid;
   LamTablePoint *point = &place->point;
@@ -101,11 +88,33 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, Place *place,
                   (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
   point->v = OnFace(PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells), ROUNDED_SUCTION);
   point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
-  if (grid->free.n) LamFreeCellStrain(&grid->free, point->s, place->free_strain);
+  LamGridFreeStrain(grid, point->s, point->w, place->free_strain);
   return PETSC_TRUE;
 }
 
-static void PlaceStrains(LamTable table, Place *place)
+/* A load that a table may have: in the plane, and with F33 = 1 where it has no axis. */
+static PetscBool PlaceF33(LamTable table, const LamLoad *load, LamTablePlace *place, LamResponse *r)
+{
+  const struct LamGrid_s *grid = table->grid;
+  LamTablePoint *point = &place->point;
+  const PetscReal F33 = load->F[8], most = grid->z_min + grid->z_step * (PetscReal)grid->z_cells;
+
+  place->F33 = 1;
+  if (!LamLoadValidateInPlane(load, r)) return PETSC_FALSE;
+  if (!grid->z_cells && LamPlaneStrain(load->F)) return PETSC_TRUE;
+  if (!grid->z_cells)
+    return Refuse(r, "F33 is %.6g, the database covers 1 alone (plane strain): build one of a scene with sample.F33",
+                  (double)F33);
+  point->w = OnFace((log(F33) - grid->z_min) / grid->z_step, ROUNDED_STRAIN);
+  if (!(point->w >= 0 && point->w <= (PetscReal)grid->z_cells))
+    return Refuse(r, "F33 is %.6g, the database covers %.4g to %.4g: build one of a scene with a wider sample.F33",
+                  (double)F33, (double)exp(grid->z_min), (double)exp(most));
+  point->z = 1 + PetscMin((int)point->w, (int)grid->z_cells - 1);
+  place->F33 = F33;
+  return PETSC_TRUE;
+}
+
+static void PlaceStrains(LamTable table, LamTablePlace *place)
 {
   const struct LamGrid_s *grid = table->grid;
   PetscReal u[3];
@@ -124,7 +133,7 @@ static void PlaceStrains(LamTable table, Place *place)
   }
 }
 
-static void SumLevels(LamTable table, Place *place)
+static void SumLevels(LamTable table, LamTablePlace *place)
 {
   for (int level = 0; level < table->levels; level++) {
     const LamTableCell *cell = LamTableFindCell(table, &place->point, level, &place->cells[level]);
@@ -148,7 +157,7 @@ static void SumLevels(LamTable table, Place *place)
 /* ---- error estimate ---- */
 
 /* Root of the sum of the squares of |v_k dx_k/dF|: the components' signs are unknown. */
-static PetscReal StressSize(const Place *place, const PetscReal v[3])
+static PetscReal StressSize(const LamTablePlace *place, const PetscReal v[3])
 {
   PetscReal square = 0;
 
@@ -170,25 +179,26 @@ static PetscReal Distance(const LamTablePoint *point, const LamTableCell *cell)
 }
 
 /*
-  Errors of P from the cell and from the interval of suction. Sizes are those of the whole cell: pointwise values pass
-  through zero where the error does not. B: bubbles, T: turn, S: bump.
-    bonded   Distance times, root cell: ROOT_BEND B min(1, (B / (ROOT_TURN T))^2), else |(FINE_BEND B, FINE_TURN T)|
-    contact  CONTACT_BEND B and CONTACT_BUMP S: contact can leave kinks of P next to a node
-  The error is at least the change made by nodes of finer, incomplete cells: where one of them is of another kind, this
-  is the jump to it.
+  Errors of P from the cell and from the intervals of suction and of ln F33, which have the same weight. Sizes are those
+  of the whole cell: pointwise values pass through zero where the error does not. B: bubbles, T: turn, S: bump. bonded
+  Distance times, root cell: ROOT_BEND B min(1, (B / (ROOT_TURN T))^2), else |(FINE_BEND B, FINE_TURN T)| contact
+  CONTACT_BEND B and CONTACT_BUMP S: contact can leave kinks of P next to a node The error is at least the change made
+  by nodes of finer, incomplete cells: where one of them is of another kind, this is the jump to it.
 */
-static void Estimates(LamTable table, const Place *place, PetscReal *along_strain, PetscReal *along_suction)
+static void Estimates(LamTable table, const LamTablePlace *place, PetscReal *along_strain, PetscReal *along_suction,
+                      PetscReal *along_z)
 {
   const PetscReal bend = StressSize(place, place->sum.bend), turn = StressSize(place, place->sum.turn);
   PetscReal finer[3], size, missing = 1;
 
   for (int k = 0; k < 3; k++) finer[k] = place->sum.phi.gradient[k] - place->leaf_gradient[k];
   size = StressSize(place, finer);
-  *along_suction = 0;
+  *along_suction = *along_z = 0;
   if (place->child) missing = PetscMax(MISSING_FLOOR, LamTableMissingShare(table, place->child, &place->point));
   if (table->grid->contact) {
     *along_strain = PetscMax(missing * CONTACT_BEND * bend, size);
     *along_suction = CONTACT_BUMP * StressSize(place, place->sum.bump);
+    *along_z = CONTACT_BUMP * StressSize(place, place->sum.bump_z);
     return;
   }
   if (place->leaf->level)
@@ -210,108 +220,14 @@ static PetscReal FloatingError(const struct LamGrid_s *grid, const LamTablePoint
   return 0.03 * PetscMax(0, 1 - middle / 0.012) * PetscMin(1, most / 0.2);
 }
 
-/* ---- from the sum to the response ---- */
-
-/* Psi and its derivatives in x, p and g, in the order of the lattice directions. */
-typedef struct {
-  LamJet psi, turgor; /* turgor: derivative in d at fixed s; value and gradient */
-  PetscReal s1, s2, gradient_s[3], turgor_s;
-} Potential;
-
-/* From (y, tau) in sorted axes to (x, s). */
-static void Unsort(LamTable table, const Place *place, Potential *p)
-{
-  const LamTableSum *sum = &place->sum;
-  const int *axis = place->point.axis;
-
-  p->psi.value = sum->phi.value;
-  p->turgor.value = sum->turgor1.value;
-  for (int k = 0; k < 3; k++) {
-    p->psi.gradient[axis[k]] = sum->phi.gradient[k];
-    p->psi.hessian[axis[k]] = sum->phi.hessian[k];
-    p->psi.hessian[3 + axis[k]] = sum->phi.hessian[3 + k];
-    p->turgor.gradient[axis[k]] = sum->turgor1.gradient[k];
-    p->gradient_s[axis[k]] = sum->gradient_tau[k];
-  }
-  p->s1 = sum->tau1;
-  p->s2 = sum->tau2;
-  p->turgor_s = sum->turgor1_tau;
-}
-
-static void TauToSuction(LamTable table, const Place *place, Potential *p)
-{
-  static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-  const PetscReal rate = 1 / (place->point.s + table->grid->suction_scale), *a = place->free_strain; /* dtau/ds */
-
-  p->s2 = p->s2 * rate * rate - p->s1 * rate * rate;
-  p->s1 *= rate;
-  p->turgor_s *= rate;
-  for (int k = 0; k < 3; k++) p->gradient_s[k] *= rate;
-  /* x = y + a(s): at fixed x, y moves by -a' ds */
-  for (int k = 0; k < 3; k++) {
-    p->s2 -= 2 * a[1] * p->gradient_s[k] + a[2] * p->psi.gradient[k];
-    p->s1 -= a[1] * p->psi.gradient[k];
-    p->turgor_s -= a[1] * p->turgor.gradient[k];
-    for (int l = 0; l < 3; l++) p->s2 += a[1] * a[1] * p->psi.hessian[entry[k][l]];
-  }
-  for (int k = 0; k < 3; k++)
-    for (int l = 0; l < 3; l++) p->gradient_s[k] -= a[1] * p->psi.hessian[entry[k][l]];
-}
-
-static void PlaneToFull(const PetscReal a[4], PetscReal full[9])
-{
-  for (int i = 0; i < 9; i++) full[i] = 0; /* plane strain has no out-of-plane shear stress */
-  for (int i = 0; i < 4; i++) full[3 * (i / 2) + i % 2] = a[i];
-}
-
-/* dP/dp and dP/dg, and the other derivatives with respect to p and g. */
-static void FillPressures(LamTable table, const Place *place, const Potential *p, PetscReal J, const PetscReal J_x[3],
-                          LamResponse *r)
-{
-  const PetscBool contact = table->grid->contact;
-  const PetscReal p1 = p->turgor.value, p2 = place->sum.turgor2;
-  PetscReal g[3], P[4];
-
-  /* contact: s = p + g, d = g0 - g; Psi depends on p through s, on g through both */
-  r->energy_turgor = contact ? p->s1 : p1 - J;
-  r->energy_turgor2 = contact ? p->s2 : p2;
-  r->energy_cohesion = contact ? p->s1 - p1 + J : 0;
-  r->energy_cohesion2 = contact ? p->s2 + p2 - 2 * p->turgor_s : 0;
-  r->energy_turgor_cohesion = contact ? p->s2 - p->turgor_s : 0;
-  for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] : p->turgor.gradient[k] - J_x[k];
-  LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
-  PlaneToFull(P, r->P_turgor);
-  for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] - p->turgor.gradient[k] + J_x[k] : 0;
-  LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
-  PlaneToFull(P, r->P_cohesion);
-}
-
-static void FillPotential(LamTable table, const Place *place, Potential *p, LamResponse *r)
-{
-  const LamLoad *load = &r->load;
-  const PetscBool contact = table->grid->contact;
-  const PetscReal c = contact ? load->cohesion : -load->turgor;
-  PetscReal J, J_x[3], J_xx[6], P[4], A[4][4];
-
-  J = LamLatticeVolume(&table->grid->axes, &place->lattice, J_x, J_xx);
-  FillPressures(table, place, p, J, J_x, r);
-  r->energy = p->psi.value + c * J;
-  for (int k = 0; k < 3; k++) p->psi.gradient[k] += c * J_x[k];
-  for (int m = 0; m < 6; m++) p->psi.hessian[m] += c * J_xx[m];
-  LamLatticeStress(&table->grid->axes, &place->lattice, p->psi.gradient, P);
-  LamLatticeTangent(&table->grid->axes, &place->lattice, p->psi.gradient, p->psi.hessian, A);
-  PlaneToFull(P, r->P);
-  for (int a = 0; a < 4; a++)
-    for (int b = 0; b < 4; b++) r->tangent[9 * (3 * (a / 2) + a % 2) + 3 * (b / 2) + b % 2] = A[a][b];
-}
-
 /* ---- the response ---- */
 
-static PetscBool Locate(LamTable table, const LamLoad *load, Place *place, LamResponse *r)
+static PetscBool Locate(LamTable table, const LamLoad *load, LamTablePlace *place, LamResponse *r)
 {
   const PetscReal F[4] = {load->F[0], load->F[1], load->F[3], load->F[4]};
 
   memset(place, 0, sizeof(*place));
+  if (!PlaceF33(table, load, place, r)) return PETSC_FALSE;
   place->lattice = LamLatticeStateOf(&table->grid->axes, F);
   if (!PlaceSuction(table, load, place, r)) return PETSC_FALSE;
   PlaceStrains(table, place);
@@ -319,7 +235,7 @@ static PetscBool Locate(LamTable table, const LamLoad *load, Place *place, LamRe
   return PETSC_TRUE;
 }
 
-static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
+static PetscBool Accept(const LamTablePlace *place, PetscReal accuracy, LamResponse *r)
 {
   if (!place->floating && !place->leaf) return Refuse(r, "the database has no nodes around this state");
   if (!place->floating && !place->good)
@@ -329,28 +245,27 @@ static PetscBool Accept(const Place *place, PetscReal accuracy, LamResponse *r)
 }
 
 /* All of the response that follows from the potential, and P33. PETSC_FALSE: the table has no response. */
-static PetscBool Fill(LamTable table, Place *place, LamResponse *r)
+static PetscBool Fill(LamTable table, LamTablePlace *place, LamResponse *r)
 {
-  PetscReal along_strain = 0, along_suction = 0;
-  Potential potential;
+  PetscReal along_strain = 0, along_suction = 0, along_z = 0;
 
   if (place->floating) /* P = g J F^-T, exact except for the free cell's data */
     LamTableAddFloating(table, &place->point, &place->sum);
   else if (place->leaf && place->good)
-    Estimates(table, place, &along_strain, &along_suction);
+    Estimates(table, place, &along_strain, &along_suction, &along_z);
   else
     return PETSC_FALSE;
-  Unsort(table, place, &potential);
-  if (table->grid->contact) TauToSuction(table, place, &potential);
-  FillPotential(table, place, &potential, r);
-  LamTableThickness(table, &place->point, place->leaf, &place->lattice, r);
-  r->error_estimate =
-      place->floating ? FloatingError(table->grid, &place->point)
-                      : LamStressErrorOfSize(table->scale, hypot(along_strain, along_suction), r->P);
+  LamTableFillPotential(table, place, r);
+  if (!table->grid->z_cells)
+    LamTableThickness(table, &place->point, place->leaf, &place->lattice, r);
+  else
+    along_suction = hypot(along_suction, along_z);
+  r->error_estimate = place->floating ? FloatingError(table->grid, &place->point)
+                                      : LamStressErrorOfSize(table->scale, hypot(along_strain, along_suction), r->P);
   return PETSC_TRUE;
 }
 
-static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse *r)
+static void Answer(LamTable table, LamTablePlace *place, PetscReal accuracy, LamResponse *r)
 {
   (void)Fill(table, place, r);
   if (!Accept(place, accuracy, r)) return;
@@ -361,13 +276,12 @@ static void Answer(LamTable table, Place *place, PetscReal accuracy, LamResponse
 PetscErrorCode LamTableQuery(LamTable table, const LamLoad *load, PetscReal accuracy, LamResponse *response)
 {
   const PetscReal start = LamClock();
-  Place place;
+  LamTablePlace place;
 
   PetscFunctionBeginUser;
   PetscCall(LamResponseInit(load, response));
   response->source = LAM_SOURCE_DATABASE;
-  if (LamLoadValidate(load, response) && Locate(table, load, &place, response))
-    Answer(table, &place, accuracy, response);
+  if (Locate(table, load, &place, response)) Answer(table, &place, accuracy, response);
   response->seconds = LamClock() - start;
   PetscFunctionReturn(0);
 }
@@ -381,10 +295,10 @@ typedef struct {
   PetscBool hopeless; /* a needed node has no usable solution */
 } Needs;
 
-static void Need(Needs *needs, const int at[3], int j)
+static void Need(Needs *needs, const int at[3], int j, int z)
 {
   const struct LamGrid_s *grid = needs->table->grid;
-  LamNodePlace place = {.j = j};
+  LamNodePlace place = {.j = j, .z = z};
   PetscInt node;
   PetscInt64 key;
 
@@ -395,7 +309,7 @@ static void Need(Needs *needs, const int at[3], int j)
   for (PetscInt s = 0; node >= 0 && s < needs->table->nodes[node].count; s++) {
     const LamTableState *state = &LamTableStates(needs->table, &needs->table->nodes[node])[s];
 
-    if (state->j != j) continue;
+    if (state->j != j || state->z != z) continue;
     if (!state->has_data) needs->hopeless = PETSC_TRUE;
     return;
   }
@@ -404,7 +318,7 @@ static void Need(Needs *needs, const int at[3], int j)
   if (*needs->n < LAM_MAX_NEEDS) needs->keys[(*needs->n)++] = key;
 }
 
-/* Adds all corners of the point's cell of a level, at both ends of an interval of suction. */
+/* Adds all corners of the point's cell of a level, at both ends of an interval of suction and of ln F33. */
 static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const int ends[2])
 {
   const int size = LAM_ROOT >> level;
@@ -413,7 +327,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
     int at[3];
 
     for (int k = 0; k < 3; k++) at[k] = (int)floor(point->u[k] / size) * size + (c >> k & 1 ? size : 0);
-    for (int e = 0; e < (needs->table->grid->contact ? 2 : 1); e++) Need(needs, at, ends[e]);
+    for (int line = 0; line < LamTableLines(needs->table); line++)
+      for (int e = 0; e < (needs->table->grid->contact ? 2 : 1); e++) Need(needs, at, ends[e], point->z + line);
   }
 }
 
@@ -426,17 +341,18 @@ static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTa
   for (int c = 0; c < 8 && cell && table->grid->contact; c++) {
     const LamTableState *at[2];
 
-    if (cell->node[c] < 0) continue;
-    LamTableBracket(table, &table->nodes[cell->node[c]], point, at);
-    if (at[0]) ends[0] = PetscMax(ends[0], at[0]->j);
-    if (at[1]) ends[1] = PetscMin(ends[1], at[1]->j);
+    for (int line = 0; line < LamTableLines(table) && cell->node[c] >= 0; line++) {
+      LamTableBracket(table, &table->nodes[cell->node[c]], point, line, at);
+      if (at[0]) ends[0] = PetscMax(ends[0], at[0]->j);
+      if (at[1]) ends[1] = PetscMin(ends[1], at[1]->j);
+    }
   }
   for (int e = 0; e < 2; e++)
     if (ends[e] == point->v) ends[1 - e] = ends[e];
 }
 
 /* Outside the range of node places, or strains that are not finite. */
-static PetscBool IsOutside(LamTable table, const Place *place)
+static PetscBool IsOutside(LamTable table, const LamTablePlace *place)
 {
   for (int k = 0; k < 3; k++)
     if (!(fabs(place->point.u[k]) < LAM_GRID_REACH - 2 * LAM_ROOT)) return PETSC_TRUE;
@@ -447,16 +363,16 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
                              PetscInt64 keys[LAM_MAX_NEEDS])
 {
   Needs needs = {table, n, keys, PETSC_FALSE};
-  PetscReal along_strain, along_suction;
+  PetscReal along_strain, along_suction, along_z;
   LamResponse response;
-  Place place;
+  LamTablePlace place;
   int ends[2];
 
   PetscFunctionBeginUser;
   *n = 0;
   if (error) *error = PETSC_INFINITY;
   PetscCall(LamResponseInit(load, &response));
-  if (!LamLoadValidate(load, &response) || !Locate(table, load, &place, &response)) PetscFunctionReturn(0);
+  if (!Locate(table, load, &place, &response)) PetscFunctionReturn(0);
   if (Fill(table, &place, &response)) {
     if (error) *error = response.error_estimate;
     if (response.error_estimate <= accuracy) PetscFunctionReturn(0);
@@ -468,7 +384,7 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
   else if (!place.good) {
     if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   } else {
-    Estimates(table, &place, &along_strain, &along_suction);
+    Estimates(table, &place, &along_strain, &along_suction, &along_z);
     if (along_suction > along_strain && ends[1] - ends[0] > CONTACT_INTERVAL) {
       ends[0] = ends[1] = (ends[0] + ends[1]) / 2;
       NeedCell(&needs, &place.point, place.leaf->level, ends);
@@ -493,7 +409,8 @@ static void FindNearest(LamTable table, const LamTableCell *cell, const LamTable
       square += PetscSqr(point->u[k] - cell->i[k] - (c >> k & 1 ? LAM_ROOT >> cell->level : 0));
     for (PetscInt s = 0; node && s < node->count; s++) {
       const LamTableState *state = &LamTableStates(table, node)[s];
-      const PetscReal distance = square + PetscSqr(point->v - state->j);
+      const PetscReal knots = table->grid->z_cells ? point->w - (state->z - 1) : 0;
+      const PetscReal distance = square + PetscSqr(point->v - state->j) + PetscSqr(LAM_ROOT * knots);
 
       if (!state->good || distance >= *least) continue;
       *least = distance;
@@ -508,7 +425,7 @@ static void FindNearest(LamTable table, const LamTableCell *cell, const LamTable
   iterations, its stress would jump by that much.
 */
 static const PetscReal ALIKE = 1e-3; /* chosen: some 40 times the strain differences of observed swaps */
-static void OrderAxes(const Place *place, int axis[3])
+static void OrderAxes(const LamTablePlace *place, int axis[3])
 {
   for (int k = 0; k < 3; k++) axis[k] = place->point.axis[k];
   for (int pass = 0; pass < 3; pass++) {
@@ -527,14 +444,14 @@ PetscErrorCode LamTableTurn(LamTable table, const LamLoad *load, LamLoad *turned
 {
   PetscReal x[3], U[4], least = PETSC_INFINITY;
   LamResponse response;
-  Place place;
+  LamTablePlace place;
   int axis[3];
 
   PetscFunctionBeginUser;
   *turned = *load;
   *key = -1;
   PetscCall(LamResponseInit(load, &response));
-  if (!LamLoadValidate(load, &response) || !Locate(table, load, &place, &response)) PetscFunctionReturn(0);
+  if (!Locate(table, load, &place, &response)) PetscFunctionReturn(0);
   OrderAxes(&place, axis);
   for (int k = 0; k < 3; k++) x[k] = LamOnGrid(place.lattice.x[axis[k]]);
   if (!LamLatticeStretch(&table->grid->axes, x, U)) PetscFunctionReturn(0);

@@ -32,7 +32,7 @@ static PetscReal Bending(const PetscReal F[4], const PetscReal P[4], const Petsc
 
 static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
 
-/* Psi + factor J and its derivatives in x. */
+/* Psi + factor J, J in the plane, and its derivatives in x. */
 static void StrainJet(const struct LamGrid_s *grid, const LamNodeData *r, PetscReal factor, LamJet *jet,
                       PetscReal dF[3][4], PetscReal J_x[3])
 {
@@ -51,15 +51,14 @@ static void StrainJet(const struct LamGrid_s *grid, const LamNodeData *r, PetscR
   }
 }
 
-/* Change of variables from (x, s) to (y, s), x = y + a(s), then from s to tau. */
-static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, PetscReal phi_s, PetscReal phi_ss,
-                      const PetscReal gradient_s[3], LamTableState *state)
-{
-  static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
-  const PetscReal rate = s + grid->suction_scale; /* ds/dtau = d2s/dtau2 */
-  PetscReal a[3] = {0};
+static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
 
-  if (grid->free.n) LamFreeCellStrain(&grid->free, s, a);
+/* Change of variables from (x, s) to (y, s), x = y + a(s), then from s to tau. */
+static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, const PetscReal a[6], PetscReal phi_s,
+                      PetscReal phi_ss, const PetscReal gradient_s[3], LamTableState *state)
+{
+  const PetscReal rate = s + grid->suction_scale; /* ds/dtau = d2s/dtau2 */
+
   for (int k = 0; k < 3; k++) {
     PetscReal moved = gradient_s[k];
 
@@ -78,12 +77,49 @@ static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, PetscReal phi_s
   state->turgor_tau *= rate;
 }
 
-/* Bonded: Psi + p J; contact: Psi - g J = Psi + p J - s J. */
-static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTableState *state)
+/*
+  Derivatives in z = ln F33 at fixed y = x - a(s, z); phi_s, gradient_s: in s, at fixed x; state: in y.
+    at fixed x: Phi_z = F33 (P33 + c J), c = p or -g, and so on, with the volume F33 J.
+*/
+static void FillAxial(const struct LamGrid_s *grid, const LamNodeData *r, PetscReal F33, const PetscReal a[6],
+                      const PetscReal gradient_s[3], PetscReal dF[3][4], const PetscReal J_x[3],
+                      const LamTableState *state, LamTableAxial *axial)
 {
-  const PetscReal factor = grid->contact ? -r->cohesion : r->turgor, J = r->F[0] * r->F[3] - r->F[1] * r->F[2];
-  PetscReal dF[3][4], J_x[3], along[3], at_rest[4];
+  const PetscReal J = r->F[0] * r->F[3] - r->F[1] * r->F[2], c = grid->contact ? -r->cohesion : r->turgor;
+  const PetscReal along_s = a[1], along_z = a[3];
 
+  axial->first = F33 * (r->P33 + c * J);
+  axial->second = F33 * F33 * r->P33_F33 + axial->first;
+  axial->turgor = F33 * (r->P33_turgor - (grid->contact ? r->P33_cohesion : 0) + J);
+  axial->mixed =
+      F33 * r->P33_turgor + a[5] * (state->phi.gradient[0] + state->phi.gradient[1] + state->phi.gradient[2]);
+  for (int k = 0; k < 3; k++) axial->gradient[k] = F33 * (Contract(r->P33_F, dF[k]) + c * J_x[k]);
+  for (int k = 0; k < 3; k++) {
+    axial->second += 2 * along_z * axial->gradient[k] + a[4] * state->phi.gradient[k];
+    axial->mixed += along_z * gradient_s[k] + along_s * axial->gradient[k];
+    axial->turgor += along_z * state->turgor_gradient[k];
+    axial->first += along_z * state->phi.gradient[k];
+    for (int l = 0; l < 3; l++) {
+      axial->second += along_z * along_z * state->phi.hessian[entry[k][l]];
+      axial->mixed += along_s * along_z * state->phi.hessian[entry[k][l]];
+    }
+  }
+  for (int k = 0; k < 3; k++)
+    for (int l = 0; l < 3; l++) axial->gradient[k] += along_z * state->phi.hessian[entry[k][l]];
+  axial->second_minus = axial->second;
+  axial->mixed *= r->turgor + r->cohesion + grid->suction_scale; /* ds/dtau */
+}
+
+/* Bonded: Psi + p J; contact: Psi - g J = Psi + p J - s J. z: that of the place. */
+static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, int z, LamTableState *state,
+                      LamTableAxial *axial)
+{
+  const PetscReal F33 = LamGridF33(grid, z), s = r->turgor + r->cohesion;
+  const PetscReal factor = F33 * (grid->contact ? -r->cohesion : r->turgor);
+  const PetscReal J = F33 * (r->F[0] * r->F[3] - r->F[1] * r->F[2]);
+  PetscReal dF[3][4], J_x[3], along[3], at_rest[4], a[6] = {0};
+
+  if (grid->contact) LamGridFreeStrain(grid, s, z - 1, a);
   StrainJet(grid, r, factor, &state->phi, dF, J_x);
   for (int k = 0; k < 3; k++) state->minus[k] = state->phi.hessian[k];
   /* dPhi/dp at fixed s: with contact, cohesion decreases by as much */
@@ -92,12 +128,13 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, LamTab
   state->turgor2 = r->energy_turgor2;
   if (grid->contact) state->turgor2 += r->energy_cohesion2 - 2 * r->energy_turgor_cohesion;
   for (int k = 0; k < 3; k++) {
-    state->turgor_gradient[k] = Contract(at_rest, dF[k]) + J_x[k];
+    state->turgor_gradient[k] = Contract(at_rest, dF[k]) + F33 * J_x[k];
     along[k] = Contract(r->P_turgor, dF[k]);
   }
+  if (axial) FillAxial(grid, r, F33, a, along, dF, J_x, state, axial);
   if (!grid->contact) return; /* bonded: no dependence on cohesion, whose derivatives may be unknown */
   state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion; /* in s, at fixed x */
-  MoveAlong(grid, r->turgor + r->cohesion, r->energy_turgor, r->energy_turgor2, along, state);
+  MoveAlong(grid, s, a, r->energy_turgor, r->energy_turgor2, along, state);
 }
 
 static PetscBool IsFinite(const LamTableState *s)
@@ -119,39 +156,54 @@ static PetscBool HasBuckled(const LamNodeData *r)
   return (PetscBool)(r->branch > 0 && !(r->debonded_fraction > BARELY_TOUCHING));
 }
 
+static PetscBool IsFiniteAxial(const LamTableAxial *axial)
+{
+  const PetscReal *g = axial->gradient;
+
+  return (PetscBool)isfinite(axial->first + axial->second + axial->mixed + axial->turgor + g[0] + g[1] + g[2]);
+}
+
 /* A solve has the symmetry of its state only to its tolerance: averages over the axes with equal coordinates. */
-static void Symmetrise(const int i[3], LamTableState *state)
+static void SymmetriseTriple(const int i[3], PetscReal triple[3])
+{
+  const PetscReal old[3] = {triple[0], triple[1], triple[2]};
+
+  for (int k = 0; k < 3; k++) {
+    PetscReal sum = 0;
+    int count = 0;
+
+    for (int l = 0; l < 3; l++)
+      if (i[l] == i[k]) {
+        sum += old[l];
+        count++;
+      }
+    triple[k] = sum / count;
+  }
+}
+
+static void Symmetrise(const int i[3], LamTableState *state, LamTableAxial *axial)
 {
   PetscReal *const triples[] = {state->phi.gradient, state->phi.hessian,  state->phi.hessian + 3,
                                 state->minus,        state->gradient_tau, state->turgor_gradient};
 
-  for (size_t n = 0; n < PETSC_STATIC_ARRAY_LENGTH(triples); n++) {
-    const PetscReal old[3] = {triples[n][0], triples[n][1], triples[n][2]};
-
-    for (int k = 0; k < 3; k++) {
-      PetscReal sum = 0;
-      int count = 0;
-
-      for (int l = 0; l < 3; l++)
-        if (i[l] == i[k]) {
-          sum += old[l];
-          count++;
-        }
-      triples[n][k] = sum / count;
-    }
-  }
+  for (size_t n = 0; n < PETSC_STATIC_ARRAY_LENGTH(triples); n++) SymmetriseTriple(i, triples[n]);
+  if (axial) SymmetriseTriple(i, axial->gradient);
 }
 
-void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state)
+void LamTableMakeState(const struct LamGrid_s *grid, const LamNodeData *r, PetscInt data, LamTableState *state,
+                       LamTableAxial *axial)
 {
   const LamNodePlace place = LamNodePlaceOf(r->key);
-  const int j = place.j;
+  const LamTableState nothing = {.j = place.j, .z = place.z, .data = data};
 
-  *state = (LamTableState){.j = j, .data = data};
+  *state = nothing;
+  if (axial) *axial = (LamTableAxial){0};
   if (r->status != LAM_CONVERGED && r->status != LAM_UNSTABLE) return;
-  FillState(grid, r, state);
-  if (grid->symmetric) Symmetrise(place.i, state);
-  state->has_data = IsFinite(state);
+  FillState(grid, r, place.z, state, axial);
+  if (grid->symmetric) Symmetrise(place.i, state, axial);
+  state->has_data = (PetscBool)(IsFinite(state) && (!axial || IsFiniteAxial(axial)));
   state->good = (PetscBool)(state->has_data && r->status == LAM_CONVERGED && r->stable && !HasBuckled(r));
-  if (!state->has_data) *state = (LamTableState){.j = j, .data = data};
+  if (state->has_data) return;
+  *state = nothing;
+  if (axial) *axial = (LamTableAxial){0};
 }

@@ -16,13 +16,14 @@
 static void Subtract(LamTable table, PetscInt n);
 
 /*
-  The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below).
-  *order: axis k of the node is axis order[k] of the sum.
+  The sum of the coarser levels at a node and v along suction, in the cells on the given sides (bit k: below), at the
+  knot z in its interval above (below: `low` 1). *order: axis k of the node is axis order[k] of the sum.
 */
-static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int sides, LamTableSum *sum,
-                           const int **order)
+static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v, int z, int low, int sides,
+                           LamTableSum *sum, const int **order)
 {
-  LamTablePoint point = {.tau = table->grid->tau_min + table->grid->tau_step * v / LAM_ROOT, .v = v};
+  LamTablePoint point = {
+      .tau = table->grid->tau_min + table->grid->tau_step * v / LAM_ROOT, .v = v, .w = z - 1, .z = z - low};
   int shifted[3], sorted[3]; /* in quarters */
 
   memset(sum, 0, sizeof(*sum));
@@ -44,6 +45,14 @@ static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v
   return PETSC_TRUE;
 }
 
+static void SubtractAxial(const LamTableSum *sum, const int order[3], LamTableAxial *axial)
+{
+  axial->first -= sum->z1;
+  axial->mixed -= sum->tau_z;
+  axial->turgor -= sum->turgor1_z;
+  for (int k = 0; k < 3; k++) axial->gradient[k] -= sum->gradient_z[order[k]];
+}
+
 static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableState *state)
 {
   state->phi.value -= sum->phi.value;
@@ -62,16 +71,42 @@ static void SubtractSum(const LamTableSum *sum, const int order[3], LamTableStat
 
 #define BESIDE 1e-6 /* in units of j */
 
+/* The knot's interval of z below (1) or above (0), another at the ends. */
+static int Beside(const struct LamGrid_s *grid, int z, int below)
+{
+  return z == 1 ? 0 : z > grid->z_cells ? 1 : below;
+}
+
+/* As tau2_minus: d2Phi/dz2 of the coarser sum jumps where the gradient's cubic along z does. */
+static void SubtractAlongZ(LamTable table, const LamTableNode *node, const LamTableState *state, int sides,
+                           LamTableAxial *axial)
+{
+  for (int below = 0; below < 2; below++) {
+    const int low = Beside(table->grid, state->z, below);
+    LamTableSum sum;
+    const int *order;
+
+    if (!CoarseSum(table, node, state->j, state->z, low, sides, &sum, &order)) continue;
+    if (below)
+      axial->second_minus -= sum.z2;
+    else {
+      axial->second -= sum.z2;
+      SubtractAxial(&sum, order, axial);
+    }
+  }
+}
+
 /*
   Subtracts the sum of the coarser levels from a state. Value, gradient and mixed derivatives are equal in all cells
   that meet there. A pure second derivative is taken from any cell on its side, that along tau from the intervals on its
   side; only these need to be complete.
 */
-static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState *state)
+static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState *state, LamTableAxial *axial)
 {
   const int coarse = LAM_ROOT >> (node->level - 1);
   PetscReal plus[3], minus[3];
   PetscBool subtracted = PETSC_FALSE;
+  const int low = axial ? Beside(table->grid, state->z, 0) : 0;
   int faces = 0;
 
   for (int k = 0; k < 3; k++) {
@@ -82,7 +117,7 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     LamTableSum sum;
     const int *order;
 
-    if ((sides & ~faces) || !CoarseSum(table, node, state->j, sides, &sum, &order)) continue;
+    if ((sides & ~faces) || !CoarseSum(table, node, state->j, state->z, low, sides, &sum, &order)) continue;
     for (int k = 0; k < 3; k++) {
       const PetscReal pure = sum.phi.hessian[order[k]];
 
@@ -94,24 +129,27 @@ static void MakeSurplus(LamTable table, const LamTableNode *node, LamTableState 
     }
     if (subtracted) continue;
     SubtractSum(&sum, order, state);
-    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), sides, &sum, &order)) state->tau2_minus -= sum.tau2;
+    if (axial) SubtractAlongZ(table, node, state, sides, axial);
+    if (CoarseSum(table, node, PetscMax(state->j - BESIDE, 0), state->z, low, sides, &sum, &order))
+      state->tau2_minus -= sum.tau2;
     subtracted = PETSC_TRUE;
   }
   for (int k = 0; k < 3; k++) {
     state->minus[k] -= minus[k];
     state->phi.hessian[k] -= plus[k];
   }
-  if (!subtracted || !isfinite(state->phi.value)) /* no coarser level covers the state */
-    *state = (LamTableState){.j = state->j, .data = state->data};
+  if (subtracted && isfinite(state->phi.value)) return;
+  *state = (LamTableState){.j = state->j, .z = state->z, .data = state->data}; /* no coarser level covers the state */
+  if (axial) *axial = (LamTableAxial){0};
 }
 
 /* ---- mixed third derivatives ---- */
 
 /*
-  The surplus of the node at a place on a level at suction j; NULL: unknown. It is 0 for nodes of coarser levels and
-  floating cells. order: as returned by LamTableSortAxes.
+  The surplus of the node at a place on a level at suction j and knot z; NULL: unknown. It is 0 for nodes of coarser
+  levels and floating cells. order: as returned by LamTableSortAxes.
 */
-static const LamTableState *FindState(LamTable table, int level, const int at[3], int j, int *order)
+static const LamTableState *FindState(LamTable table, int level, const int at[3], int j, int z, int *order)
 {
   static const LamTableState nothing = {0};
   const LamTableNode *node;
@@ -123,9 +161,9 @@ static const LamTableState *FindState(LamTable table, int level, const int at[3]
   if (n < 0) return LamPlaceIsFloating(table->grid, at) ? &nothing : NULL;
   node = &table->nodes[n];
   Subtract(table, n);
-  for (PetscInt s = 0; s < node->count; s++)
-    if (table->states[node->first + s].j == j && table->states[node->first + s].has_data)
-      return node->level < level ? &nothing : &table->states[node->first + s];
+  for (const LamTableState *state = &table->states[node->first]; state < &table->states[node->first] + node->count;
+       state++)
+    if (state->j == j && state->z == z && state->has_data) return node->level < level ? &nothing : state;
   return NULL;
 }
 
@@ -142,7 +180,7 @@ static PetscReal MixedSlope(LamTable table, const LamTableNode *node, const LamT
     const LamTableState *next;
 
     at[k] += side ? size : -size;
-    next = FindState(table, node->level, at, state->j, &order);
+    next = FindState(table, node->level, at, state->j, state->z, &order);
     if (!next) continue;
     mixed[side] = next->phi.hessian[3 + LamAxisOrder[order][k]];
     length += table->grid->step / (1 << node->level);
@@ -167,36 +205,106 @@ static PetscReal MixedThird(LamTable table, const LamTableNode *node, const LamT
   return count[2] ? sum[2] / count[2] : count[1] ? sum[1] / count[1] : 0;
 }
 
-/* ---- slopes along suction ---- */
+/* ---- slopes along suction and along z ---- */
+
+/* Of n <= 3 states at `at` (in `unit`s): weights of their numbers in the slope at number s of the parabola, or line. */
+static void SlopeWeights(PetscInt n, const int at[], PetscInt s, PetscReal unit, PetscReal weight[])
+{
+  for (PetscInt a = 0; a < n; a++) {
+    PetscReal rise = n == 2 ? 1 : 0, run = 1;
+
+    for (PetscInt b = 0; b < n; b++) {
+      if (b == a) continue;
+      if (n == 3) rise += unit * (at[s] - at[b]);
+      run *= unit * (at[a] - at[b]);
+    }
+    weight[a] = rise / run;
+  }
+}
+
+static void AddSlope(LamTable table, PetscReal weight, PetscInt from, PetscInt to)
+{
+  const LamTableState *other = &table->states[from];
+  LamTableState *state = &table->states[to];
+
+  for (int m = 0; m < 6; m++) state->hessian_tau[m] += weight * other->phi.hessian[m];
+  for (int k = 0; k < 3; k++) state->minus_tau[k] += weight * other->minus[k];
+  if (!table->axial) return;
+  table->axial[to].second_tau[0] += weight * table->axial[from].second;
+  table->axial[to].second_tau[1] += weight * table->axial[from].second_minus;
+  for (int k = 0; k < 3; k++) table->axial[to].gradient_tau[k] += weight * table->axial[from].gradient[k];
+}
 
 /*
   Slopes of the second derivatives in tau: of the parabola through three neighbouring states of the column, or of the
-  line through two.
+  line through two. The column: `count` states from `from` on.
 */
-static void SlopesAlongSuction(LamTable table, const LamTableNode *node)
+static void SlopesAlongSuction(LamTable table, PetscInt from, PetscInt count)
 {
-  LamTableState *states = &table->states[node->first];
+  LamTableState *states = &table->states[from];
   const PetscReal unit = table->grid->tau_step / LAM_ROOT;
-  const PetscInt n = PetscMin(node->count, 3);
+  const PetscInt n = PetscMin(count, 3);
 
-  for (PetscInt s = 0; s < node->count; s++) {
-    const PetscInt first = PetscMax(0, PetscMin(s - 1, node->count - n));
+  for (PetscInt s = 0; s < count; s++) {
+    const PetscInt first = PetscMax(0, PetscMin(s - 1, count - n));
     PetscBool known = (PetscBool)(n > 1);
+    PetscReal weight[3];
+    int at[3];
 
     states[s].alone = (PetscBool)(n == 1);
-
-    for (PetscInt a = first; a < first + n; a++) known = (PetscBool)(known && states[a].has_data);
-    for (PetscInt a = first; a < first + n && known; a++) {
-      PetscReal rise = n == 2 ? 1 : 0, run = 1;
-
-      for (PetscInt b = first; b < first + n; b++) {
-        if (b == a) continue;
-        if (n == 3) rise += unit * (states[s].j - states[b].j);
-        run *= unit * (states[a].j - states[b].j);
-      }
-      for (int m = 0; m < 6; m++) states[s].hessian_tau[m] += rise / run * states[a].phi.hessian[m];
-      for (int k = 0; k < 3; k++) states[s].minus_tau[k] += rise / run * states[a].minus[k];
+    for (PetscInt a = 0; a < n; a++) {
+      known = (PetscBool)(known && states[first + a].has_data);
+      at[a] = states[first + a].j;
     }
+    if (!known) continue;
+    SlopeWeights(n, at, s - first, unit, weight);
+    for (PetscInt a = 0; a < n; a++) AddSlope(table, weight[a], from + first + a, from + s);
+  }
+}
+
+/* The columns of a node: one, or one for each knot of z. */
+static void SlopesAlongColumns(LamTable table, const LamTableNode *node)
+{
+  const LamTableState *states = &table->states[node->first];
+  PetscInt count;
+
+  for (PetscInt s = 0; s < node->count; s += count) {
+    for (count = 1; s + count < node->count && states[s + count].z == states[s].z;) count++;
+    SlopesAlongSuction(table, node->first + s, count);
+  }
+}
+
+/* The node's state at the suction of state number s, `knots` knots of z away; -1: unknown. */
+static PetscInt Neighbour(LamTable table, const LamTableNode *node, PetscInt s, int knots)
+{
+  const LamTableState *states = table->states;
+
+  for (PetscInt n = node->first; n < node->first + node->count; n++)
+    if (states[n].z == states[s].z + knots && states[n].j == states[s].j && states[n].has_data) return n;
+  return -1;
+}
+
+/* Slopes of the second derivatives in z, likewise from up to three knots with a state of this suction: the next on
+   either side, or two on one. */
+static void SlopesAlongZ(LamTable table, const LamTableNode *node, PetscInt s)
+{
+  static const int triples[3][2] = {{-1, 1}, {1, 2}, {-1, -2}}, singles[2] = {1, -1};
+  LamTableAxial *axial = &table->axial[s];
+  PetscInt of[3] = {s}, n = 1;
+  PetscReal weight[3];
+  int at[3] = {0};
+
+  for (int k = 0; k < 3 && n < 3; k++)
+    for (n = 1; n < 3 && (of[n] = Neighbour(table, node, s, triples[k][n - 1])) >= 0; n++) at[n] = triples[k][n - 1];
+  for (int k = 0; k < 2 && n < 2; k++)
+    if ((of[1] = Neighbour(table, node, s, singles[k])) >= 0) at[n++] = singles[k];
+  if (n < 2) return;
+  SlopeWeights(n, at, 0, table->grid->z_step, weight);
+  for (PetscInt a = 0; a < n; a++) {
+    const LamTableState *state = &table->states[of[a]];
+
+    for (int m = 0; m < 6; m++) axial->hessian[m] += weight[a] * state->phi.hessian[m];
+    for (int k = 0; k < 3; k++) axial->minus[k] += weight[a] * state->minus[k];
   }
 }
 
@@ -211,8 +319,10 @@ static void Subtract(LamTable table, PetscInt n)
   for (PetscInt s = node->first; s < node->first + node->count; s++) {
     LamTableState *state = &table->states[s];
 
-    LamTableMakeState(table->grid, &table->source->data[table->data[s]], table->data[s], state);
-    if (state->has_data && node->level) MakeSurplus(table, node, state);
+    LamTableAxial *axial = table->axial ? &table->axial[s] : NULL;
+
+    LamTableMakeState(table->grid, &table->source->data[table->data[s]], table->data[s], state, axial);
+    if (state->has_data && node->level) MakeSurplus(table, node, state, axial);
   }
   atomic_store_explicit(&node->stage, LAM_NODE_SUBTRACTED, memory_order_relaxed);
 }
@@ -226,7 +336,9 @@ void LamTableMakeNode(LamTable table, PetscInt n)
     Subtract(table, n);
     for (PetscInt s = node->first; s < node->first + node->count; s++)
       if (table->states[s].has_data) table->states[s].phi.third = MixedThird(table, node, &table->states[s]);
-    if (table->grid->contact) SlopesAlongSuction(table, node);
+    if (table->grid->contact) SlopesAlongColumns(table, node);
+    for (PetscInt s = node->first; table->axial && s < node->first + node->count; s++)
+      if (table->states[s].has_data) SlopesAlongZ(table, node, s);
     atomic_store_explicit(&node->stage, LAM_NODE_MADE, memory_order_release);
   }
   mtx_unlock(&table->lock);

@@ -61,7 +61,7 @@ static PetscErrorCode CompareBetweenKnots(LamResponder solver, const LamFreeCell
     LamResponse r;
 
     LamFreeCellStrain(cell, s, a);
-    LamFreeCellEnergy(cell, s, energy, turgor);
+    LamFreeCellEnergy(cell, 0, s, energy, turgor);
     PetscCall(Solve(solver, x, s, &r));
     worst[0] = fmax(worst[0], fabs(a[0] - log(exp(x[0]) - 0.5 * r.min_gap)));
     worst[1] = fmax(worst[1], fabs(energy[0] - (r.energy - COHESION * J)));
@@ -149,7 +149,7 @@ static PetscErrorCode Run(int count)
   PetscCall(NewTissue(&micro, &rve, NULL));
   PetscCall(LamRVEResponderCreate(rve, 0, &solver));
   PetscCall(PetscTime(&start));
-  PetscCall(LamFreeCellMake(&micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, solver, &cell));
+  PetscCall(LamFreeCellMake(&micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, NULL, solver, &cell));
   PetscCall(PetscTime(&end));
   printf("%d knots from %d solves in %.2f s\n", (int)cell.n, (int)LamResponderGetCounters(solver).solves, end - start);
   PetscCall(CompareBetweenKnots(solver, &cell));

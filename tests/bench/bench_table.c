@@ -1,4 +1,4 @@
-/* Times of answers from the table, part by part; the net work of closed cycles and the order of convergence for a known
+/* Times of answers from the table, part by part, and of whole queries with and without the axis F33; the net work of closed cycles and the order of convergence for a known
    potential. Prints figures, asserts nothing. */
 #include <math.h>
 #include <stdio.h>
@@ -8,6 +8,7 @@
 #include "support/tissue.h"
 #include <hermite_cell.h>
 #include "measure.h"
+#include "support/test.h"
 
 #include "support/strain_cycle.h"
 
@@ -157,10 +158,54 @@ static void Convergence(PetscBool contact)
   }
 }
 
+#define QUERIES 2000
+
+/* Microseconds of a query to root cells and some of two finer levels, warm; the least of some passes. */
+static double QueryTime(PetscBool contact, PetscBool axial)
+{
+  const AnalyticTissue tissue = {contact, 0.2, axial};
+  AnalyticTable t = AnalyticTableOpenScene(tissue, AnalyticScene(&tissue));
+  const double low = contact ? -2 * LAM_ROOT : 0;
+  double least = INFINITY;
+  LamLoad loads[QUERIES];
+  uint64_t seed = 3;
+  LamTable table;
+
+  AddRough(&t, 2, 0, &(uint64_t){1});
+  for (int n = 0; n < QUERIES; n++) {
+    const double u[3] = {low + RandomReal(&seed, 0, 2 * LAM_ROOT), low + RandomReal(&seed, 0, 2 * LAM_ROOT),
+                         low + RandomReal(&seed, 0, 2 * LAM_ROOT)};
+
+    loads[n] = LoadAtF33(&t, u, RandomReal(&seed, 0, LAM_ROOT * (double)t.grid->tau_cells),
+                         RandomReal(&seed, 0, (double)t.grid->z_cells), 0);
+  }
+  CHECK(LamDatabaseGetTable(t.database, &table));
+  for (int pass = 0; pass < REPEATS; pass++) {
+    const double start = ProcessorSeconds();
+    LamResponse r;
+
+    for (int n = 0; n < QUERIES; n++) CHECK(LamTableQuery(table, &loads[n], PETSC_INFINITY, &r));
+    least = fmin(least, 1e6 * (ProcessorSeconds() - start) / QUERIES);
+  }
+  CHECK(LamTableDestroy(&table));
+  AnalyticTableClose(&t);
+  return least;
+}
+
+static void QueryTimes(PetscBool contact)
+{
+  const double plane = QueryTime(contact, PETSC_FALSE), axial = QueryTime(contact, PETSC_TRUE);
+
+  printf("%-32s %8.2f %8.2f %8.2f\n", contact ? "contact" : "bonded", plane, axial, axial / plane);
+}
+
 int main(int argc, char **argv)
 {
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   if (Kernels()) return 1;
+  printf("\ntime of a query, us           F33 = 1      axis    ratio\n");
+  QueryTimes(PETSC_FALSE);
+  QueryTimes(PETSC_TRUE);
   printf("\nnet work of closed cycles / range of energy       median    worst\n");
   if (Work(PETSC_FALSE) || Work(PETSC_TRUE)) return 1;
   printf("\nworst error of P, refined alike everywhere         error    order\n");

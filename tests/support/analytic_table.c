@@ -15,6 +15,10 @@ LamScene AnalyticScene(const AnalyticTissue *tissue)
     scene.sample.turgor_min = 0.1 * TISSUE_SUCTION - TISSUE_G0;
     scene.sample.turgor_max = TISSUE_SUCTION - TISSUE_G0;
   }
+  if (tissue->axial) {
+    scene.sample.F33_min = 0.85;
+    scene.sample.F33_max = 1.25;
+  }
   return scene;
 }
 
@@ -49,7 +53,7 @@ AnalyticTable AnalyticTableOpenScene(AnalyticTissue tissue, LamScene scene)
 
 AnalyticTable AnalyticTableOpen(PetscBool contact, double orientation)
 {
-  const AnalyticTissue tissue = {contact, orientation};
+  const AnalyticTissue tissue = {contact, orientation, PETSC_FALSE};
 
   return AnalyticTableOpenScene(tissue, AnalyticScene(&tissue));
 }
@@ -61,7 +65,12 @@ void AnalyticTableClose(AnalyticTable *t)
 
 PetscInt64 KeyOf(const AnalyticTable *t, const int i[3], int j)
 {
-  LamNodePlace place = {{i[0], i[1], i[2]}, j};
+  return KeyAt(t, i, j, 0);
+}
+
+PetscInt64 KeyAt(const AnalyticTable *t, const int i[3], int j, int z)
+{
+  LamNodePlace place = {{i[0], i[1], i[2]}, j, z};
 
   for (int pass = 0; pass < 2 && t->grid->symmetric; pass++)
     for (int k = 0; k < 2; k++)
@@ -102,12 +111,15 @@ void AddKey(AnalyticTable *t, PetscInt64 key)
 
 void AddPlace(AnalyticTable *t, const int i[3], int j)
 {
-  if (!LamPlaceIsFloating(t->grid, i)) AddKey(t, KeyOf(t, i, j));
+  const int knots = t->grid->z_cells ? (int)t->grid->z_cells + 1 : 0;
+
+  if (LamPlaceIsFloating(t->grid, i)) return;
+  for (int z = knots ? 1 : 0; z <= knots; z++) AddKey(t, KeyAt(t, i, j, z));
 }
 
 void AddFailed(AnalyticTable *t, const int i[3], int j)
 {
-  const PetscInt64 key = KeyOf(t, i, j);
+  const PetscInt64 key = KeyAt(t, i, j, t->grid->z_cells ? 2 : 0);
   LamResponse r;
   LamLoad load;
 
@@ -130,14 +142,19 @@ void AddBlock(AnalyticTable *t, int level, const int first[3], int cells, int al
 
 LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle)
 {
+  return LoadAtF33(t, u, v, 0, angle);
+}
+
+LamLoad LoadAtF33(const AnalyticTable *t, const double u[3], double v, double w, double angle)
+{
   const double c = cos(angle), s = sin(angle);
   LamLoad load = {.turgor = t->grid->turgor};
-  double shift = t->grid->origin, a[3] = {0}, U[4], x[3];
+  double shift = t->grid->origin, a[6] = {0}, U[4], x[3];
 
   if (t->grid->contact) {
     const double suction = t->grid->suction_scale * expm1(t->grid->tau_min + t->grid->tau_step * v / LAM_ROOT);
 
-    if (t->grid->free.n) LamFreeCellStrain(&t->grid->free, suction, a);
+    LamGridFreeStrain(t->grid, suction, w, a);
     load.cohesion = t->grid->cohesion;
     load.turgor = suction - load.cohesion;
     shift += a[0];
@@ -148,7 +165,7 @@ LamLoad LoadAt(const AnalyticTable *t, const double u[3], double v, double angle
   load.F[1] = c * U[1] - s * U[3];
   load.F[3] = s * U[0] + c * U[2];
   load.F[4] = s * U[1] + c * U[3];
-  load.F[8] = 1;
+  load.F[8] = t->grid->z_cells ? exp(t->grid->z_min + t->grid->z_step * w) : 1;
   return load;
 }
 
@@ -168,6 +185,12 @@ LamResponse Ask(const AnalyticTable *t, const LamLoad *load)
   return AskFor(t, load, PETSC_INFINITY);
 }
 
+static void AddSome(AnalyticTable *t, const int i[3], int j, uint64_t *seed)
+{
+  for (int z = 1; z <= t->grid->z_cells + 1; z++)
+    if (!LamPlaceIsFloating(t->grid, i) && RandomReal(seed, 0, 1) < 0.75) AddKey(t, KeyAt(t, i, j, z));
+}
+
 void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
 {
   const int corner = t->grid->contact ? -LAM_ROOT * cells : 0, first[3] = {corner, corner, corner};
@@ -184,6 +207,8 @@ void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
         if (RandomReal(seed, 0, 1) < (j % LAM_ROOT ? 0.3 : 0.9)) {
           if (RandomReal(seed, 0, 1) < failing)
             AddFailed(t, i, j);
+          else if (t->grid->z_cells)
+            AddSome(t, i, j, seed);
           else
             AddPlace(t, i, j);
         }

@@ -2,7 +2,7 @@
 
 /* ---- numbers with their first and second derivatives ---- */
 
-enum { VARIABLES = 6 };
+enum { VARIABLES = 7 };
 
 typedef struct {
   double v, g[VARIABLES], h[VARIABLES][VARIABLES];
@@ -96,7 +96,8 @@ static void Symmetric(const Number x[3], Number e[3])
   e[2] = Times(x[0], Times(x[1], x[2]));
 }
 
-static Number BondedEnergy(const Number x[3], Number p)
+/* z = ln F33, 0 in plane strain */
+static Number BondedEnergy(const Number x[3], Number z, Number p)
 {
   const Number d = Sum(p, -1, Constant(TISSUE_P0));
   Number e[3], phi, T, W;
@@ -106,6 +107,10 @@ static Number BondedEnergy(const Number x[3], Number p)
   for (int k = 0; k < 3; k++) phi = Sum(phi, 0.25, Exp(Of(x[k], 3 * x[k].v, 3, 0)));
   T = Sum(Sum(Constant(0.3), 0.05, e[1]), 0.2, e[2]);
   W = Sum(Constant(0.01), 0.02, e[0]);
+  phi = Sum(Sum(phi, 0.9, Times(z, z)), 0.6, Times(Exp(z), Times(z, e[1])));
+  phi = Sum(Sum(phi, 0.5, Times(z, e[2])), -0.4, Times(z, Exp(e[0])));
+  T = Sum(Sum(T, 0.1, z), 0.03, Times(z, e[0]));
+  W = Sum(W, 0.01, z);
   return Sum(Sum(phi, 1, Times(d, T)), 0.5, Times(Times(d, d), W));
 }
 
@@ -120,17 +125,26 @@ static Number Tau(Number s)
   return Log(Sum(Constant(1), 32 / TISSUE_SUCTION, s));
 }
 
-static Number ContactEnergy(const Number x[3], Number s, Number d)
+/* a, where cells touch */
+static Number Width(Number tau, Number z)
 {
-  const Number tau = Tau(s), a = Polynomial(3, tissue_width, tau), T0 = Polynomial(3, tissue_turgor, tau);
-  const Number W = Polynomial(3, tissue_turgor2, tau);
+  const Number a = Polynomial(3, tissue_width, tau);
+
+  return Sum(Sum(Sum(a, -0.3, z), 0.1, Times(z, z)), -0.01, Times(z, tau));
+}
+
+static Number ContactEnergy(const Number x[3], Number s, Number z, Number d)
+{
+  const Number tau = Tau(s), a = Width(tau, z), T0 = Sum(Polynomial(3, tissue_turgor, tau), 0.01, Times(z, tau));
+  const Number W = Sum(Polynomial(3, tissue_turgor2, tau), 0.003, z);
   Number r[3], e[3], phi, T;
 
   for (int k = 0; k < 3; k++) r[k] = Pressed(Sum(x[k], -1, a));
   Symmetric(r, e);
   phi = Sum(Polynomial(5, tissue_free_energy, s), 1, Times(Sum(Constant(2), 3, s), e[0]));
   phi = Sum(Sum(phi, 5, e[1]), 8, Times(s, e[2]));
-  T = Sum(T0, 0.05, Times(tau, e[0]));
+  phi = Sum(Sum(Sum(phi, 0.3, Times(z, z)), 0.2, Times(z, s)), 0.7, Times(z, e[0]));
+  T = Sum(Sum(T0, 0.05, Times(tau, e[0])), 0.02, Times(z, e[0]));
   return Sum(Sum(phi, 1, Times(d, T)), 0.5, Times(Times(d, d), W));
 }
 
@@ -140,7 +154,8 @@ static Number TissueEnergy(const AnalyticTissue *tissue, const LamLoad *load, Nu
   const Number F[4] = {Variable(load->F[0], 0), Variable(load->F[1], 1), Variable(load->F[3], 2),
                        Variable(load->F[4], 3)};
   const Number p = Variable(load->turgor, 4), g = Variable(load->cohesion, 5), s = Sum(p, 1, g);
-  const Number J = Sum(Times(F[0], F[3]), -1, Times(F[1], F[2]));
+  const Number F33 = tissue->axial ? Variable(load->F[8], 6) : Constant(1), z = Log(F33);
+  const Number J = Times(F33, Sum(Times(F[0], F[3]), -1, Times(F[1], F[2])));
   Number x[3];
 
   for (int k = 0; k < 3; k++) {
@@ -153,15 +168,24 @@ static Number TissueEnergy(const AnalyticTissue *tissue, const LamLoad *load, Nu
   }
   if (tissue->contact) {
     *across = Sum(Times(g, J), 0.3, s);
-    return Sum(ContactEnergy(x, s, Sum(Constant(TISSUE_G0), -1, g)), 1, Times(g, J));
+    return Sum(ContactEnergy(x, s, z, Sum(Constant(TISSUE_G0), -1, g)), 1, Times(g, J));
   }
   *across = Sum(Sum(Sum(x[0], 1, x[1]), 1, x[2]), -1, Times(p, J));
-  return Sum(BondedEnergy(x, p), -1, Times(p, J));
+  return Sum(BondedEnergy(x, z, p), -1, Times(p, J));
 }
 
 /* ---- the answer ---- */
 
-static void FillDerivatives(Number psi, Number across, LamResponse *r)
+/* P33 as a number, with its own first derivatives alone. */
+static Number Across(Number psi)
+{
+  Number across = {.v = psi.g[6]};
+
+  for (int i = 0; i < VARIABLES; i++) across.g[i] = psi.h[6][i];
+  return across;
+}
+
+static void FillDerivatives(Number psi, Number across, PetscReal stiffness, LamResponse *r)
 {
   static const int in_plane[4] = {0, 1, 3, 4};
 
@@ -176,7 +200,7 @@ static void FillDerivatives(Number psi, Number across, LamResponse *r)
   r->P[8] = across.v;
   r->P_turgor[8] = across.g[4];
   r->P_cohesion[8] = across.g[5];
-  r->tangent[80] = 1;
+  r->tangent[80] = stiffness;
 }
 
 LamResponse TissueAnswer(const AnalyticTissue *tissue, const LamLoad *load)
@@ -187,7 +211,8 @@ LamResponse TissueAnswer(const AnalyticTissue *tissue, const LamLoad *load)
   (void)LamResponseInit(load, &r);
   r.status = LAM_CONVERGED;
   r.stable = PETSC_TRUE;
-  FillDerivatives(psi, across, &r);
+  if (tissue->axial) across = Across(psi);
+  FillDerivatives(psi, across, tissue->axial ? across.g[6] : 1, &r);
   r.energy = psi.v;
   r.energy_turgor = psi.g[4];
   r.energy_cohesion = psi.g[5];
@@ -203,7 +228,7 @@ PetscErrorCode TissueRespond(void *ctx, PetscInt n, const LamLoad loads[], const
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
     const Number s = Constant(loads[i].turgor + loads[i].cohesion);
-    const double gap = 2 * (loads[i].F[0] - exp(Polynomial(3, tissue_width, Tau(s)).v));
+    const double gap = 2 * (loads[i].F[0] - exp(Width(Tau(s), Constant(log(loads[i].F[8]))).v));
 
     responses[i] = TissueAnswer(ctx, &loads[i]);
     responses[i].min_gap = fmax(0, gap);

@@ -1,10 +1,11 @@
 /*
   A tissue with known answers: records of a grid from a closed formula, differentiated twice by forward-mode
-  differentiation in F11 F12 F21 F22 p g. With the symmetry of the hexagon, bonded or in contact.
+  differentiation in F11 F12 F21 F22 p g F33. With the symmetry of the hexagon, bonded or in contact.
 
     x_k = ln |F n_k|, n_k at orientation + 60 k degrees;   d = p - p0 (bonded), p - (s - g0) (contact), s = p + g
     bonded   Psi = Phi(x) + d T(x) + d^2 W(x) / 2 - p J
     contact  Psi = Phi(x - a(s), s) + d T + d^2 W / 2 + g J; nothing but E(s) + d T(s) + .. where all x_k >= a(s)
+  axial: a, E, T and W depend on F33, too, and P33 is the derivative of Psi; otherwise P33 is a function of its own.
 */
 #ifndef LAM_SUPPORT_ANALYTIC_TISSUE_H
 #define LAM_SUPPORT_ANALYTIC_TISSUE_H
@@ -19,6 +20,7 @@
 typedef struct {
   PetscBool contact;
   double orientation;
+  PetscBool axial;
 } AnalyticTissue;
 
 LamResponse TissueAnswer(const AnalyticTissue *tissue, const LamLoad *load);

@@ -76,6 +76,7 @@ typedef enum {
   NO_SOLVER,
   NO_GRID,
   CACHE,
+  CACHE_OF_F33,
   CACHE_WITH_NODES,
   CACHE_WITH_BAD_NODES,
   STOPPING_CACHE,
@@ -96,6 +97,8 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
                                              .wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9, .bulk_modulus = 1000},
                                              .along = 4,
                                              .through = 1};
+  if (kind == CACHE_OF_F33) fixture->scene.sample.F33_min = 0.9;
+  if (kind == CACHE_OF_F33) fixture->scene.sample.F33_max = 1.2;
   CHECK(LamDatabaseCreateEmpty(&fixture->scene, &fixture->database));
   if (kind != NO_GRID) {
     CHECK(LamGridCreate(&fixture->scene, NULL, &grid));
@@ -475,6 +478,49 @@ CACHE_TEST(NoModelIsTakenToBesideAFailure, CACHE_WITH_BAD_NODES)
   }
 }
 
+/* ---- F33 ---- */
+
+static PetscReal AxialError(const Fixture *fixture, PetscInt p)
+{
+  LamResponse exact;
+
+  CHECK(LamResponseInit(&fixture->loads[p], &exact));
+  SyntheticEvaluate(fixture->material, &fixture->loads[p], &exact);
+  return fabs(fixture->responses[p].P[8] - exact.P[8]) / fmax(fabs(exact.P[8]), 0.1);
+}
+
+/* A question adds the nodes of the knots of F33 next to it; another interval of F33 has one of them already. */
+CACHE_TEST(NodesAreSolvedAtTheKnotsAroundAnF33, CACHE_OF_F33)
+{
+  PetscInt first;
+
+  SetLoad(fixture, 0, 0.1);
+  fixture->loads[0].F[8] = 0.95;
+  Respond(fixture, 1);
+  first = RecordCount(fixture);
+  assert_int_equal(first % 2, 0);
+  assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
+  assert_true(Error(fixture, 0) < ACCURACY && AxialError(fixture, 0) < ACCURACY);
+  fixture->loads[0].F[8] = 1.07;
+  Respond(fixture, 1);
+  assert_int_equal(RecordCount(fixture), first + first / 2);
+  assert_true(Error(fixture, 0) < ACCURACY && AxialError(fixture, 0) < ACCURACY);
+  assert_int_equal(LamResponderGetCounters(fixture->cache).interpolated, 2);
+}
+
+/* Outside of the range, and in a table that has none, a state is solved; its model serves F33 nearby, too. */
+CACHE_TEST(AModelServesF33NextToItsState, CACHE)
+{
+  for (PetscInt k = 0; k < 2; k++) {
+    SetLoad(fixture, 0, 0.1);
+    fixture->loads[0].F[8] = 1.1 + 2e-3 * (PetscReal)k;
+    Respond(fixture, 1);
+    assert_int_equal(fixture->responses[0].source, k ? LAM_SOURCE_DATABASE : LAM_SOURCE_SOLVE);
+    assert_true(Error(fixture, 0) < 1e-4 && AxialError(fixture, 0) < 1e-4);
+  }
+  assert_int_equal(RecordCount(fixture), 1);
+}
+
 /* ---- within a load step ---- */
 
 /* The answer to the first question stays when the table is refined, until the step is accepted or rejected. */
@@ -509,7 +555,7 @@ CACHE_TEST(SolvedPointStaysSolved, CACHE)
 {
   for (PetscInt k = 0; k < 3; k++) {
     SetLoad(fixture, 0, 0.1);
-    if (k < 2) fixture->loads[0].F[8] = 1.1 + 0.01 * k;
+    if (k < 2) fixture->loads[0].F[8] = 1.1 + 0.1 * (PetscReal)k;
     Respond(fixture, 1);
     assert_int_equal(fixture->responses[0].source, LAM_SOURCE_SOLVE);
   }

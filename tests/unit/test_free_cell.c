@@ -88,7 +88,7 @@ static LamFreeCell MakeOf(const LamMicrostructure *micro, Tissue *known)
   LamFreeCell cell;
 
   assert_int_equal(LamResponderCreate(&functions, known, NULL, &solver), 0);
-  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, solver, &cell), 0);
+  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, KNOTS, NULL, solver, &cell), 0);
   return cell;
 }
 
@@ -193,7 +193,7 @@ CELL_TEST(the_energy_is_exact_for_a_quintic, Make())
     double exact[3], energy[3], turgor[2][3];
 
     Polynomial(5, energy_of_s, s, exact);
-    LamFreeCellEnergy(cell, s, energy, turgor);
+    LamFreeCellEnergy(cell, 0, s, energy, turgor);
     assert_near(energy[0], exact[0], 1e-14);
     assert_near(energy[1], exact[1], 1e-13);
     assert_near(energy[2], exact[2], 1e-10);
@@ -208,7 +208,7 @@ CELL_TEST(the_step_in_turgor_is_exact_for_a_cubic_in_tau, Make())
     const double s = RandomSuction(&seed);
     double energy[3], turgor[2][3];
 
-    LamFreeCellEnergy(cell, s, energy, turgor);
+    LamFreeCellEnergy(cell, 0, s, energy, turgor);
     for (int i = 0; i < 2; i++) {
       double exact[3];
 
@@ -238,7 +238,7 @@ static void All(const LamFreeCell *cell, double s, double y[8])
   double turgor[2][3];
 
   LamFreeCellStrain(cell, s, y);
-  LamFreeCellEnergy(cell, s, y + 3, turgor);
+  LamFreeCellEnergy(cell, 0, s, y + 3, turgor);
   y[6] = turgor[0][0];
   y[7] = turgor[1][0];
 }

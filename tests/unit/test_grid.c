@@ -7,7 +7,7 @@
 
 static LamGrid Make(PetscBool contact)
 {
-  AnalyticTissue tissue = {contact, 0.2};
+  AnalyticTissue tissue = {contact, 0.2, PETSC_FALSE};
   const LamScene scene = AnalyticScene(&tissue);
   LamGrid grid;
 
@@ -20,8 +20,11 @@ static LamGrid Make(PetscBool contact)
 TEST(keys_and_places_are_one_to_one)
 {
   const int far = LAM_GRID_REACH;
-  const LamNodePlace places[] = {
-      {{0, 0, 0}, 0}, {{-far, -1, far - 1}, 4095}, {{1, 2, 3}, 4}, {{-far, -far, -far}, 0}, {{far - 1, 0, -far}, 1}};
+  const LamNodePlace places[] = {{{0, 0, 0}, 0, 0},
+                                 {{-far, -1, far - 1}, 4095, 0},
+                                 {{1, 2, 3}, 4, 1},
+                                 {{-far, -far, -far}, 0, 0},
+                                 {{far - 1, 0, -far}, 1, 63}};
 
   for (size_t n = 0; n < sizeof(places) / sizeof(places[0]); n++) {
     const PetscInt64 key = LamNodeKeyOf(&places[n]);
@@ -34,14 +37,15 @@ TEST(keys_and_places_are_one_to_one)
 
 TEST(keys_rise_with_places)
 {
-  const LamNodePlace places[] = {{{-5, 9, 9}, 9}, {{-4, -9, 0}, 0}, {{-4, 3, 0}, 0}, {{-4, 3, 1}, 7}, {{-4, 3, 1}, 8}};
+  const LamNodePlace places[] = {
+      {{-5, 9, 9}, 9, 0}, {{-4, -9, 0}, 0, 0}, {{-4, 3, 0}, 0, 0}, {{-4, 3, 1}, 7, 0}, {{-4, 3, 1}, 8, 0}};
 
   for (int n = 1; n < 5; n++) assert_true(LamNodeKeyOf(&places[n - 1]) < LamNodeKeyOf(&places[n]));
 }
 
 TEST(other_keys_are_of_no_node)
 {
-  const LamNodePlace last = {{LAM_GRID_REACH - 1, LAM_GRID_REACH - 1, LAM_GRID_REACH - 1}, 4095};
+  const LamNodePlace last = {{LAM_GRID_REACH - 1, LAM_GRID_REACH - 1, LAM_GRID_REACH - 1}, 4095, 63};
 
   assert_false(LamKeyIsNode(0));
   assert_false(LamKeyIsNode(-1));
@@ -52,17 +56,17 @@ TEST(other_keys_are_of_no_node)
 
 TEST(the_level_is_that_of_the_finest_coordinate)
 {
-  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT, 3 * LAM_ROOT}, 5}), 0);
-  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT / 2, LAM_ROOT}, 0}), 1);
-  assert_int_equal(LamNodeLevel(&(LamNodePlace){{-LAM_ROOT / 4, LAM_ROOT / 2, 0}, 0}), 2);
-  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, 0, -1}, 0}), LAM_FINEST);
+  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT, 3 * LAM_ROOT}, 5, 0}), 0);
+  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, -LAM_ROOT / 2, LAM_ROOT}, 0, 0}), 1);
+  assert_int_equal(LamNodeLevel(&(LamNodePlace){{-LAM_ROOT / 4, LAM_ROOT / 2, 0}, 0, 0}), 2);
+  assert_int_equal(LamNodeLevel(&(LamNodePlace){{0, 0, -1}, 0, 0}), LAM_FINEST);
 }
 
 /* ---- states ---- */
 
 static void AssertStrains(LamGrid grid, const int i[3], int j)
 {
-  const LamNodePlace place = {{i[0], i[1], i[2]}, j};
+  const LamNodePlace place = {{i[0], i[1], i[2]}, j, 0};
   PetscReal shift[3] = {grid->origin, 0, 0};
   LamLatticeState at;
   LamLoad load;
@@ -93,7 +97,7 @@ TEST(a_node_has_the_strains_of_its_place)
 TEST(strains_that_no_state_has_give_no_F)
 {
   OWNED(LamGrid, LamGridDestroy) grid = Make(PETSC_FALSE);
-  const LamNodePlace place = {{-6000, -6000, 6000}, 0};
+  const LamNodePlace place = {{-6000, -6000, 6000}, 0, 0};
   LamLoad load;
 
   CHECK(LamGridNodeLoad(grid, LamNodeKeyOf(&place), &load));
@@ -123,7 +127,8 @@ TEST(parents_are_coarser_until_there_is_none)
   for (int n = 0; n < 200; n++) {
     LamNodePlace place = {
         {(int)RandomReal(&seed, -900, -300), (int)RandomReal(&seed, -300, 300), (int)RandomReal(&seed, 300, 900)},
-        (int)RandomReal(&seed, 0, LAM_ROOT * (double)grid->tau_cells)};
+        (int)RandomReal(&seed, 0, LAM_ROOT * (double)grid->tau_cells),
+        0};
     int steps = 0;
 
     for (PetscInt64 key = LamGridNodeParent(grid, LamNodeKeyOf(&place)); key >= 0; steps++) {
@@ -142,7 +147,7 @@ TEST(parents_are_coarser_until_there_is_none)
 
 static void AssertNoGrid(const LamScene *scene, const char what[])
 {
-  AnalyticTissue tissue = {PETSC_TRUE, 0};
+  AnalyticTissue tissue = {PETSC_TRUE, 0, PETSC_FALSE};
   OWNED(LamGrid, LamGridDestroy) grid = NULL;
   PetscErrorCode error;
 
@@ -153,7 +158,7 @@ static void AssertNoGrid(const LamScene *scene, const char what[])
 
 TEST(a_patch_has_no_grid)
 {
-  const AnalyticTissue tissue = {PETSC_FALSE, 0};
+  const AnalyticTissue tissue = {PETSC_FALSE, 0, PETSC_FALSE};
   LamScene scene = AnalyticScene(&tissue);
 
   scene.micro.is_patch = PETSC_TRUE;
@@ -162,7 +167,7 @@ TEST(a_patch_has_no_grid)
 
 TEST(contact_without_suction_has_no_grid)
 {
-  const AnalyticTissue tissue = {PETSC_TRUE, 0};
+  const AnalyticTissue tissue = {PETSC_TRUE, 0, PETSC_FALSE};
   LamScene scene = AnalyticScene(&tissue);
 
   scene.cohesion = 0;
@@ -174,7 +179,7 @@ TEST(contact_without_suction_has_no_grid)
 
 static LamMicrostructure MicroOf(PetscBool contact)
 {
-  const AnalyticTissue tissue = {contact, 0.2};
+  const AnalyticTissue tissue = {contact, 0.2, PETSC_FALSE};
 
   return AnalyticScene(&tissue).micro;
 }

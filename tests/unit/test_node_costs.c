@@ -7,7 +7,7 @@ static struct LamGrid_s grid;
 
 static PetscInt64 Key(int i0, int j)
 {
-  const LamNodePlace place = {{i0 * LAM_ROOT, 0, 0}, j};
+  const LamNodePlace place = {{i0 * LAM_ROOT, 0, 0}, j, 0};
 
   return LamNodeKeyOf(&place);
 }

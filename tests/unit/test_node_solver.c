@@ -14,7 +14,7 @@ static LamRVE rve;
 
 static PetscInt64 Key(int i0, int i1, int i2, int j)
 {
-  const LamNodePlace place = {{i0, i1, i2}, j};
+  const LamNodePlace place = {{i0, i1, i2}, j, 0};
 
   return LamNodeKeyOf(&place);
 }

@@ -103,7 +103,7 @@ TEST(nodes_of_a_turned_cell_answer_as_their_records)
 /* Two cells a period along one lattice direction: the three are not alike. */
 TEST(without_symmetry_nodes_answer_as_their_records)
 {
-  const AnalyticTissue tissue = {PETSC_FALSE, 0.1};
+  const AnalyticTissue tissue = {PETSC_FALSE, 0.1, PETSC_FALSE};
   LamScene scene = AnalyticScene(&tissue);
   AnalyticTable t;
 

@@ -333,7 +333,7 @@ TABLE_TEST(a_record_where_cells_touch_no_one_changes_nothing, AnalyticTableOpen(
 TEST(any_key_of_a_node_can_be_in_a_file)
 {
   for (int kind = 0; kind < 4; kind++) {
-    const AnalyticTissue tissue = {(PetscBool)(kind % 2), 0.2};
+    const AnalyticTissue tissue = {(PetscBool)(kind % 2), 0.2, PETSC_FALSE};
     LamScene scene = AnalyticScene(&tissue);
     uint64_t seed = 3;
     LamResponse record;

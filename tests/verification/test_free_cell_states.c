@@ -18,7 +18,7 @@ static LamFreeCell Make(LamRVE solved, const LamMicrostructure *micro, PetscInt 
   LamFreeCell made;
 
   assert_int_equal(LamRVEResponderCreate(solved, 0, &solver), 0);
-  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, n, solver, &made), 0);
+  assert_int_equal(LamFreeCellMake(micro, COHESION, SUCTION_MIN, SUCTION_MAX, SCALE, n, NULL, solver, &made), 0);
   return made;
 }
 
@@ -85,7 +85,7 @@ TEST(EnergyIsThatOfStatesBetweenTheKnots)
     const LamResponse r = SolveApart(0.35, s - COHESION, COHESION);
     double energy[3], turgor[2][3];
 
-    LamFreeCellEnergy(&cell, s, energy, turgor);
+    LamFreeCellEnergy(&cell, 0, s, energy, turgor);
     assert_near(energy[0], r.energy - COHESION * J, 1e-9);
     assert_near(energy[1], r.energy_turgor, 1e-7);
     assert_near(energy[2], r.energy_turgor2, 1e-5);
