@@ -76,13 +76,32 @@ static PetscBool HasHistory(const LamProcessStudy *study)
   return LamHasHistory(&study->scene->micro);
 }
 
-/* From the state before; the first has been there for ever. */
+/* From the state before. */
 static PetscReal DurationOf(const LamProcessStudy *study, PetscInt k)
 {
   const LamProcessState *state = &study->history.states[k];
 
-  if (!HasHistory(study)) return 0;
-  return k ? PetscMax(0, state[0].time - state[-1].time) : PETSC_INFINITY;
+  return k && HasHistory(study) ? PetscMax(0, state[0].time - state[-1].time) : 0;
+}
+
+/* Walls with memory have been for ever where the process begins, F0 in F = F_rel F0 of its first state. */
+static PetscErrorCode StartFrames(LamProcessStudy *study, LamRVE rve, LamRVEState at)
+{
+  const LamProcessState *first = study->history.states;
+  const PetscReal *F = first->F, *total = first->response.load.F, det = F[0] * F[4] - F[1] * F[3];
+  LamLoad load = first->response.load;
+  LamResponse response;
+
+  PetscFunctionBeginUser;
+  if (!LamWallsRelax(&study->scene->micro)) PetscFunctionReturn(0);
+  load.duration = PETSC_INFINITY;
+  load.F[8] = total[8] / F[8];
+  for (int j = 0; j < 2; j++) {
+    load.F[j] = (F[4] * total[j] - F[1] * total[3 + j]) / det;
+    load.F[3 + j] = (F[0] * total[3 + j] - F[3] * total[j]) / det;
+  }
+  PetscCall(LamRVESolve(rve, &load, at, &response));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode WriteFrame(LamProcessStudy *study, LamRVE rve, LamRVEState at, PetscInt k)
@@ -130,6 +149,7 @@ static PetscErrorCode WriteFrames(LamProcessStudy *study)
   PetscCall(LamRVESetWanted(rve, LAM_WANT_STRESS));
   PetscCall(LamRVEStateCreate(rve, &state));
   ierr = LamRVEWriteMesh(study->writer, "/mesh", rve);
+  if (!ierr) ierr = StartFrames(study, rve, state);
   for (PetscInt k = 0; k < study->history.count && !ierr && !LamStopRequested(); k++)
     if (HasHistory(study) || IsChosen(study, k)) ierr = WriteFrame(study, rve, state, k);
   PetscCall(LamRVEStateDestroy(&state));

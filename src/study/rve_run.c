@@ -208,14 +208,25 @@ static PetscErrorCode Dissipate(LamRVERun *run, LamResponse *response)
   PetscFunctionReturn(0);
 }
 
+/* The next state of the load; the time of states before it that were not found passes with it. */
+static PetscErrorCode SolveNext(LamRVERun *run, LamResponse responses[2])
+{
+  LamLoad load = run->scene->loads[run->solved];
+
+  PetscFunctionBeginUser;
+  load.duration += run->missed;
+  PetscCall(LamMeshesSolve(&run->meshes, &load, LamRVERunControl(run, run->solved + 1), responses));
+  run->missed = LamResponseHasFields(&responses[0]) ? 0 : load.duration;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2])
 {
   PetscFunctionBeginUser;
   if (Dissipates(run))
     PetscCall(Dissipate(run, responses));
   else
-    PetscCall(LamMeshesSolve(&run->meshes, &run->scene->loads[run->solved], LamRVERunControl(run, run->solved + 1),
-                             responses));
+    PetscCall(SolveNext(run, responses));
   if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
   if (run->meshes.stopped) PetscFunctionReturn(0);
   if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));

@@ -42,7 +42,7 @@ typedef struct LamRVERun_s {
   LamBeside csv;          /* with a file: its table for spreadsheets */
   LamXDMF xdmf;           /* with a file: its description for ParaView */
   PetscInt solved, failed;
-  PetscReal time;              /* s, of the last state */
+  PetscReal time, missed;      /* s, of the last state; since the last one that was found */
   LamDissipationPoint reached; /* of a ramp that is followed by what is dissipated */
   PetscInt inaccurate;         /* number of states whose estimated error exceeds the prescribed accuracy */
   PetscInt unknown;            /* number of states without an error estimate */
