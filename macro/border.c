@@ -19,7 +19,7 @@
 
   Reference: Wriggers, Nonlinear Finite Element Methods, sec. 5.3; Keller, Appl. Bifurcation Theory (1977) 359-384.
 */
-#include "macro_impl.h"
+#include "transport_impl.h"
 #include <petscblaslapack.h>
 
 PetscInt LamMacroFindBorder(LamMacro macro, PetscInt entry, PetscInt component)

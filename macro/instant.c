@@ -3,7 +3,7 @@
   responses at any state.
 */
 #include <math.h>
-#include "macro_impl.h"
+#include "transport_impl.h"
 
 PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[])
 {

@@ -2,7 +2,7 @@
   Creation, set-up and destruction of the macroscale solver.
 */
 #include <math.h>
-#include "macro_impl.h"
+#include "transport_impl.h"
 
 PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro)
 {

@@ -23,7 +23,7 @@
   References: Brezzi & Fortin, Mixed and Hybrid Finite Element Methods, VI.4 (Q2/P1, P2 with a bubble/P1); Magisano,
   Leonetti & Garcea, CMAME 313 (2017) 1004-1025 (independent stresses).
 */
-#include "macro_impl.h"
+#include "transport_impl.h"
 
 #include <petscblaslapack.h> /* requires that PETSc's own headers come first */
 

@@ -21,7 +21,7 @@
 */
 #include <math.h>
 #include "clock.h"
-#include "macro_impl.h"
+#include "transport_impl.h"
 
 static const PetscReal RELATIVE_TOLERANCE = 1e-9, ABSOLUTE_TOLERANCE = 1e-10, PENETRATION = 1e-10;
 static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for the order of convergence */
@@ -29,8 +29,8 @@ static const PetscReal ROUNDING = 1e-8; /* smaller residuals are not used for th
    pressures. It allows for the jumps of interpolated responses at boundaries between cells of a table and between
    neighbouring records. */
 static const PetscReal LENIENT_TOLERANCE = 1e-6;
-/* Of the equations of the water that moves through the body, over the sum of the sizes of their terms, of which the flows
-   are differences: a thousandth of the other tolerance. The rest is closed at the end. */
+/* Of the equations of the water that moves through the body, over the sum of the sizes of their terms, of which the
+   flows are differences: a thousandth of the other tolerance. The rest is closed at the end. */
 static const PetscReal FLOW_TOLERANCE = 1e-12;
 /* MOST_RELEASES: further iterations where nodes leave obstacles one by one (rows.c), chosen: about three for each. */
 enum { MAX_HALVINGS = 8, MAX_ITERATIONS = 15, MOST_RELEASES = 25, PATIENCE = 6 };

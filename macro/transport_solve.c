@@ -7,7 +7,7 @@
   with the rows of the nodes' conditions (rows.c) in A' and B. What is solved is the equation of the displacements after
   the potentials are eliminated, so the right-hand side of the potentials is 0.
 */
-#include "macro_impl.h"
+#include "transport_impl.h"
 
 PetscErrorCode LamMacroFactorise(LamMacro macro, const char prefix[], KSP *ksp)
 {

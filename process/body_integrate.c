@@ -2,21 +2,19 @@
   One segment of time of a body, integrated by IDA (SUNDIALS).
 
   Unknowns: states of the kinetic laws x, common to all tissue; the water V of each material point; turgor and
-  displacement of the body, (q, u), and where water moves through it the potentials psi and what has flowed in, Q.
-  Equations
+  displacement of the body, (q, u); where water moves through it potentials psi and what has flowed in, Q. Equations
 
     x' = f(x, T),      V' = Lp A (sigma (pi - pi_out) - p),      equilibrium and lumens of the body for (u, q; V, x, t)
 
-  with psi_out = -sigma pi_out replaced by the potentials there, and Q' the flow at the surface (transport.c).
+  with -sigma pi_out replaced by the potentials there, and Q' the flow at the surface (transport.c).
 
   In an implicit step y' = s + c (y - a), with IDA's s, a, c, the kinetics are solved separately, and V is a function
   of p at each point (body_water.c). The remaining problem is equilibrium of a body whose lumens have volume V(p).
   IDA's nonlinear solver is therefore Newton's method of the macroscale solver with its condensed tangent. IDA
   controls predictions, errors, steps, orders and roots.
 
-  Error control covers x and V, the latter as a mean over the body's volume. Turgor and displacement follow from
-  these: equilibrium is solved again for every report and event search, so neither their interpolation in time nor the
-  error of interpolated responses limits the steps.
+  Errors of x and V are controlled, of V in the mean over the body's volume. Turgor and displacement follow: equilibrium
+  is solved again for every report and event search, so neither interpolation in time nor of responses limits the steps.
 
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
@@ -180,10 +178,8 @@ static PetscErrorCode FillCorrection(Integration *in, const PetscReal predicted[
     if (in->base.state[k] >= 0) correction[in->base.state[k]] = in->x[k] - predicted[in->base.state[k]];
   if (l->idle >= 0) correction[l->idle] = 0;
   if (l->inflow >= 0) {
-    PetscReal rate;
-
-    PetscCall(LamBodyInflowRate(body, &rate));
-    correction[l->inflow] = (rate - rates[l->inflow]) / in->c;
+    PetscCall(LamBodyInflowRate(body, &correction[l->inflow]));
+    correction[l->inflow] = (correction[l->inflow] - rates[l->inflow]) / in->c;
   }
   PetscCall(LamMacroGetState(body->macro, &correction[l->u], &correction[l->pressures], &correction[l->potentials]));
   for (PetscInt k = l->pressures; k < in->base.n; k++) correction[k] -= predicted[k];
@@ -316,7 +312,7 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
   const PetscInt *state = in->base.state;
   PetscReal *w = N_VGetArrayPointer(weight);
 
-  N_VConst(1, weight); /* also for algebraic unknowns, whose errors are suppressed */
+  N_VConst(1, weight); /* of algebraic unknowns errors are suppressed; that of the inflow is that of V */
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (state[k] >= 0) w[state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[state[k]]) + 1e-3));
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++)
@@ -438,8 +434,8 @@ static void Destroy(Integration *in)
 static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
 {
   LamBody body = in->body;
-  const PetscInt n = body->sizes.displacements, m = body->sizes.elements * body->sizes.modes,
-                 l = body->sizes.potentials;
+  const LamMacroSizes *sizes = &body->sizes;
+  const PetscInt n = sizes->displacements, m = sizes->elements * sizes->modes, l = sizes->potentials;
   N_Vector y = N_VClone(in->base.y), yp = N_VClone(in->base.y);
   PetscReal *u, *pressures, *potentials;
   PetscErrorCode ierr = 0;

@@ -3,7 +3,7 @@
 #include "support/test.h"
 #include "support/gmsh_writer.h"
 #include "support/told_body.h"
-#include "macro_impl.h"
+#include "transport_impl.h"
 #include "body_impl.h"
 #include <stdio.h>
 #include <string.h>
