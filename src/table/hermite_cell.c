@@ -52,7 +52,7 @@ static inline PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[]
 }
 
 /*
-  Derivatives up to `order` (1 or 2) of the sum over data[k][j][i] u0[i] u1[j] u2[k], i, j, k < n, added to *jet.
+  Derivatives up to `order` (0, 1 or 2) of the sum over data[k][j][i] u0[i] u1[j] u2[k], i, j, k < n, added to *jet.
   Constant n and order unroll the loops.
 */
 static inline void Contract(PetscInt n, PetscInt order, const Functions u0, const Functions u1, const Functions u2,
@@ -72,6 +72,7 @@ static inline void Contract(PetscInt n, PetscInt order, const Functions u0, cons
         for (PetscInt j = 0; j < n; j++) line[c][b][i] += u1[b][j] * plane[c][n * j + i];
       }
   jet->value += Dot(n, u0[0], line[0][0]);
+  if (order < 1) return;
   jet->gradient[0] += Dot(n, u0[1], line[0][0]);
   jet->gradient[1] += Dot(n, u0[0], line[0][1]);
   jet->gradient[2] += Dot(n, u0[0], line[1][0]);
@@ -132,7 +133,7 @@ static inline void AddBubbles(const LamJet corner[8], PetscReal h, const PetscRe
     BubbleFunctions(t[k], h, q);
     Contract(2, order, k == 0 ? q : u[0], k == 1 ? q : u[1], k == 2 ? q : u[2], surplus, &jet);
     sum->value += jet.value;
-    for (PetscInt i = 0; i < 3; i++) sum->gradient[i] += jet.gradient[i];
+    for (PetscInt i = 0; i < 3 && order > 0; i++) sum->gradient[i] += jet.gradient[i];
     for (PetscInt i = 0; i < 6 && order > 1; i++) sum->hessian[i] += jet.hessian[i];
   }
 }
@@ -153,6 +154,17 @@ void LamHermiteQuinticSlope(const LamJet corner[8], PetscReal h, const PetscReal
   for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
   AddCubic(corner, u, 1, sum);
   AddBubbles(corner, h, t, 1, u, sum);
+}
+
+PetscReal LamHermiteQuinticValue(const LamJet corner[8], PetscReal h, const PetscReal t[3])
+{
+  LamJet sum = {0};
+  Functions u[3];
+
+  for (PetscInt k = 0; k < 3; k++) HermiteFunctions(t[k], h, u[k]);
+  AddCubic(corner, u, 0, &sum);
+  AddBubbles(corner, h, t, 0, u, &sum);
+  return sum.value;
 }
 
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum)

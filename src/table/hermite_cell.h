@@ -25,8 +25,9 @@ typedef struct {
   cube.
 */
 void LamHermiteQuintic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
-/* The same without Hessian. */
+/* The same without Hessian; its value alone. */
 void LamHermiteQuinticSlope(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
+PetscReal LamHermiteQuinticValue(const LamJet corner[8], PetscReal h, const PetscReal t[3]);
 /* The first without bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /*

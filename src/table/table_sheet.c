@@ -14,9 +14,16 @@
 enum { PHI, Z, ZZ, TAU, TAU2, TAU_Z, ORDERS, BONDED_ORDERS = 3 };
 static const int order_tau[ORDERS] = {0, 0, 0, 1, 2, 1}, order_z[ORDERS] = {0, 1, 2, 0, 0, 1};
 
+/* Of these alone gradients are used. */
+static PetscBool IsFirst(int order)
+{
+  return (PetscBool)(order_tau[order] + order_z[order] == 1);
+}
+
 /* Derivatives along z of one column, each with two derivatives in tau. */
 typedef struct {
-  PetscReal first[3], second[3], gradient[3][3], turgor[3], hessian[3][6];
+  LamJet slope[3]; /* of Phi's jet */
+  PetscReal second[3], turgor[3];
 } Axial;
 
 /* A node at a point, in the axes of the cell. */
@@ -29,15 +36,17 @@ typedef struct {
 static void AddAxial(const LamTableAxial *state, const int order[3], int corner, int line, PetscReal V, PetscReal D,
                      int d, Axial *x)
 {
-  x->first[d] += V * state->first + D * state->mixed;
+  LamJet *slope = &x->slope[d];
+
+  slope->value += V * state->first + D * state->mixed;
   x->second[d] += V * (line ? state->second_minus : state->second) + D * state->second_tau[line];
   x->turgor[d] += V * state->turgor;
   for (int k = 0; k < 3; k++) {
     const int n = order[k];
 
-    x->gradient[d][k] += V * state->gradient[n] + D * state->gradient_tau[n];
-    x->hessian[d][k] += V * (corner >> k & 1 ? state->minus[n] : state->hessian[n]);
-    x->hessian[d][3 + k] += V * state->hessian[3 + n];
+    slope->gradient[k] += V * state->gradient[n] + D * state->gradient_tau[n];
+    slope->hessian[k] += V * (corner >> k & 1 ? state->minus[n] : state->hessian[n]);
+    slope->hessian[3 + k] += V * state->hessian[3 + n];
   }
 }
 
@@ -64,7 +73,7 @@ static void FloatingAxial(LamTable table, int level, PetscInt plane, const LamTa
   if (level) return;
   LamFreeCellAxial(&table->grid->free, plane, point->s, axial);
   for (int d = 0; d < 3; d++) {
-    x->first[d] = axial[0][d];
+    x->slope[d].value = axial[0][d];
     x->second[d] = axial[1][d];
     x->turgor[d] = axial[2][d];
   }
@@ -73,10 +82,19 @@ static void FloatingAxial(LamTable table, int level, PetscInt plane, const LamTa
 /* As AddHigherOrder of a column. */
 static PetscReal Bump(const LamTableInterval *z, const LamTableColumn c[2], const Axial x[2], int k)
 {
-  const PetscReal bend =
-      z->h * (x[0].gradient[0][k] + x[1].gradient[0][k]) + 2 * (c[0].phi[0].gradient[k] - c[1].phi[0].gradient[k]);
+  const PetscReal bend = z->h * (x[0].slope[0].gradient[k] + x[1].slope[0].gradient[k]) +
+                         2 * (c[0].phi[0].gradient[k] - c[1].phi[0].gradient[k]);
 
   return 0.5 * z->t * (1 - z->t) * bend;
+}
+
+/* sum += V jet + D slope, of all their numbers. */
+static void AddJets(PetscReal V, const LamJet *jet, PetscReal D, const LamJet *slope, LamJet *sum)
+{
+  sum->value += V * jet->value + D * slope->value;
+  for (int k = 0; k < 3; k++) sum->gradient[k] += V * jet->gradient[k] + D * slope->gradient[k];
+  for (int m = 0; m < 6; m++) sum->hessian[m] += V * jet->hessian[m] + D * slope->hessian[m];
+  sum->third += V * jet->third;
 }
 
 static void Join(LamTable table, const LamTableInterval *z, const LamTableColumn c[2], const Axial x[2], Sheet *sheet)
@@ -84,24 +102,20 @@ static void Join(LamTable table, const LamTableInterval *z, const LamTableColumn
   memset(sheet, 0, sizeof(*sheet));
   for (int o = 0; o < (table->grid->contact ? ORDERS : BONDED_ORDERS); o++) {
     const int a = order_tau[o], b = order_z[o];
-    LamJet *phi = &sheet->phi[o], *turgor1 = &sheet->turgor1[o];
+    const PetscReal value[2] = {c[0].phi[a].value, c[1].phi[a].value};
+    const PetscReal slope[2] = {x[0].slope[a].value, x[1].slope[a].value}, curve[2] = {x[0].second[a], x[1].second[a]};
+    LamJet *turgor1 = &sheet->turgor1[o];
     PetscReal d[2];
 
-    LamTableDefects(z, (PetscReal[]){c[0].phi[a].value, c[1].phi[a].value}, (PetscReal[]){x[0].first[a], x[1].first[a]},
-                    (PetscReal[]){x[0].second[a], x[1].second[a]}, d);
+    LamTableDefects(z, value, slope, curve, d);
     for (int e = 0; e < 2; e++) {
       const PetscReal V = z->V[e][b], D = z->D[e][b];
-      const LamJet *jet = &c[e].phi[a];
 
-      phi->value += V * jet->value + D * x[e].first[a] + z->q[e][b] * d[e];
-      phi->third += V * jet->third;
+      AddJets(V, &c[e].phi[a], D, &x[e].slope[a], &sheet->phi[o]);
+      sheet->phi[o].value += z->q[e][b] * d[e];
       turgor1->value += V * c[e].turgor1[a].value + D * x[e].turgor[a];
+      for (int k = 0; k < 3; k++) turgor1->gradient[k] += V * c[e].turgor1[a].gradient[k];
       sheet->turgor2[o] += V * c[e].turgor2[a];
-      for (int k = 0; k < 3; k++) {
-        phi->gradient[k] += V * jet->gradient[k] + D * x[e].gradient[a][k];
-        turgor1->gradient[k] += V * c[e].turgor1[a].gradient[k];
-      }
-      for (int m = 0; m < 6; m++) phi->hessian[m] += V * jet->hessian[m] + D * x[e].hessian[a][m];
     }
   }
   for (int k = 0; k < 3; k++) {
@@ -161,7 +175,7 @@ static void AddTurgor(LamTable table, const Sheet sheets[8], PetscReal h, const 
   LamJet corner[8], rate[ORDERS] = {0}, part[ORDERS] = {0};
 
   for (int o = 0; o < orders; o++) {
-    if (order_tau[o] + order_z[o] > 1) continue;
+    if (o != PHI && !IsFirst(o)) continue;
     for (int c = 0; c < 8; c++) corner[c] = LamTableTurgorJet(&sheets[c].turgor1[o], sheets[c].turgor2[o], 1, d);
     LamHermiteCubic(corner, h, t, o == PHI ? &sum->turgor1 : &rate[o]);
   }
@@ -205,7 +219,12 @@ void LamTableAddSheets(LamTable table, const LamTableCell *cell, const LamTableP
     sum->bump_z[k] = sqrt(PetscSqr(sum->bump_z[k]) + bump_z[k]);
   }
   LamHermiteQuintic(corner[PHI], h, t, &sum->phi);
-  for (int o = 1; o < orders; o++) LamHermiteQuinticSlope(corner[o], h, t, &part[o]);
+  for (int o = 1; o < orders; o++) {
+    if (IsFirst(o))
+      LamHermiteQuinticSlope(corner[o], h, t, &part[o]);
+    else
+      part[o].value = LamHermiteQuinticValue(corner[o], h, t);
+  }
   AddDerivatives(table, part, sum);
   AddTurgor(table, sheets, h, t, point->step, sum);
 }
