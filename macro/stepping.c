@@ -66,7 +66,7 @@ static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, v
   PetscFunctionBeginUser;
   /* SNES has just evaluated the residual at u: the stored responses belong to it */
   PetscCall(LamMacroAssembleTangent(macro, preconditioner));
-  PetscCall(LamMacroAddTractionTangent(macro, preconditioner));
+  PetscCall(LamMacroAddTractionTangent(macro, u, preconditioner));
   PetscCall(LamMacroBorderDerivatives(macro, preconditioner));
   PetscCall(LamMacroConstrainTangent(macro, preconditioner));
   PetscFunctionReturn(0);

@@ -254,10 +254,19 @@ typedef struct {
 #define LAM_DISC_PARTS(X)                                                                                              \
   X(LAM_DISC_WHOLE, "whole")                                                                                           \
   X(LAM_DISC_HALF, "half")       /* X2 >= 0 */                                                                         \
+  X(LAM_DISC_RIGHT, "right")     /* X1 >= 0 */                                                                         \
   X(LAM_DISC_QUARTER, "quarter") /* X1, X2 >= 0 */
 typedef enum { LAM_DISC_PARTS(LAM_ENUM_ENTRY) LAM_DISC_PART_COUNT } LamDiscPart;
 LAM_EXPORT extern const char *const LamDiscPartNames[];
 typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
+
+/* What the mesh is a section of. */
+#define LAM_MACRO_SYMMETRIES(X)                                                                                        \
+  X(LAM_PLANE_STRAIN, "plane_strain")                                                                                  \
+  X(LAM_AXISYMMETRIC, "axisymmetric") /* X1 is the radius, X2 the axis; forces and energies are those of the whole     \
+                                         circle */
+typedef enum { LAM_MACRO_SYMMETRIES(LAM_ENUM_ENTRY) LAM_MACRO_SYMMETRY_COUNT } LamMacroSymmetry;
+LAM_EXPORT extern const char *const LamMacroSymmetryNames[];
 
 #define LAM_MAX_BOUNDARIES 16
 #define LAM_MAX_ZOOMS 3
@@ -317,6 +326,7 @@ typedef struct {
 } LamLoadControl;
 
 typedef struct {
+  LamMacroSymmetry symmetry;
   LamMeshSource source;
   LamScenePlace mesh_place; /* of the key that says it */
   PetscReal box[2];         /* edges, in macro lengths (box[0] = 1) */

@@ -71,8 +71,10 @@ static const char *const box_sides[] = {LAM_SIDES(LAM_NAME_ENTRY) NULL};
 /* Names of the sides of a box or disc; NULL: they are in the mesh file. */
 static const char *const *SideNames(const LamMacroSpec *spec)
 {
-  static const char *const disc[][4] = {
-      [LAM_DISC_WHOLE] = {"rim"}, [LAM_DISC_HALF] = {"rim", "bottom"}, [LAM_DISC_QUARTER] = {"rim", "bottom", "left"}};
+  static const char *const disc[][4] = {[LAM_DISC_WHOLE] = {"rim"},
+                                        [LAM_DISC_HALF] = {"rim", "bottom"},
+                                        [LAM_DISC_RIGHT] = {"rim", "left"},
+                                        [LAM_DISC_QUARTER] = {"rim", "bottom", "left"}};
 
   if (spec->source == LAM_MESH_GMSH) return NULL;
   return spec->source == LAM_MESH_BOX ? box_sides : disc[spec->disc];
@@ -172,6 +174,22 @@ static PetscErrorCode CheckKind(const LamNode *entry, PetscBool curved, LamBound
   PetscFunctionReturn(0);
 }
 
+/* What an axisymmetric body does not have: a rigid body that moves along the radius. */
+static PetscErrorCode CheckAround(const LamNode *entry, const LamBoundary *boundary)
+{
+  const LamNode *chosen = LamNodeFind(entry, LamBoundaryKindNames[boundary->kind]);
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(boundary->kind != LAM_BOUNDARY_GRIP || (boundary->given[0] && boundary->displacement[0] == 0), chosen,
+                "a rigid grip of an axisymmetric body cannot move along X1, the radius; write 0 mm for it");
+  if (boundary->kind != LAM_BOUNDARY_INDENTER) PetscFunctionReturn(0);
+  LamSceneCheck(boundary->at[0] == 0, LamNodeFind(chosen, "at"),
+                "an indenter of an axisymmetric body moves along the axis; write 0 mm for X1");
+  LamSceneCheck(boundary->displacement[0] == 0, LamNodeFind(chosen, "displacement"),
+                "an indenter of an axisymmetric body moves along the axis; write 0 mm for X1");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadHistory(const LamNode *list, LamBoundary *boundary)
 {
   LamHistory *history = &boundary->history;
@@ -246,6 +264,7 @@ static PetscErrorCode BuildBoundary(const LamNode *entry, LamScene *scene, Condi
   boundary->place = LamNodePlace(LamNodeFind(entry, "on"));
   curved = (PetscBool)(*side >= 0 && NormalComponent(&scene->macro, *side) < 0);
   PetscCall(CheckKind(entry, curved, boundary));
+  if (scene->macro.symmetry == LAM_AXISYMMETRIC) PetscCall(CheckAround(entry, boundary));
   PetscCall(ReadHistory(LamNodeFind(entry, "history"), boundary));
   FindHeld(&scene->macro, *side, boundary, conditions->held[b]);
   PetscCall(CheckSameSide(&scene->macro, b, conditions));
@@ -287,7 +306,7 @@ static PetscErrorCode CheckCorners(const LamMacroSpec *spec, const Conditions *c
   Rigid motions of a box: along X1, along X2, and the rotation u = w (-X2, X1). A side constrains a translation if it
   prescribes the component. The rotation changes u1 along the vertical sides and u2 along the horizontal ones, so that
   prescribing one of these constrains it; a component that is constant along its side constrains it only together with
-  the opposite side. A grip never rotates.
+  the opposite side. A grip never rotates. An axisymmetric body can only move along X2.
 */
 static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec *spec, const Conditions *conditions)
 {
@@ -311,6 +330,7 @@ static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec 
   if (given[LAM_BOX_LEFT][0] || given[LAM_BOX_RIGHT][0] || given[LAM_BOX_BOTTOM][1] || given[LAM_BOX_TOP][1] ||
       (given[LAM_BOX_LEFT][1] && given[LAM_BOX_RIGHT][1]) || (given[LAM_BOX_BOTTOM][0] && given[LAM_BOX_TOP][0]))
     held[2] = PETSC_TRUE;
+  if (spec->symmetry == LAM_AXISYMMETRIC) held[0] = held[2] = PETSC_TRUE;
   for (PetscInt i = 0; i < 3; i++)
     LamSceneCheckName(held[i], list, "the body can still move %s; %s", names[i], remedies[i]);
   PetscFunctionReturn(0);

@@ -7,9 +7,15 @@
 enum { DEFAULT_STEPS = 10, MAX_STEPS = 1000000 };
 
 const char *const LamDiscPartNames[] = {LAM_DISC_PARTS(LAM_NAME_ENTRY)};
+const char *const LamMacroSymmetryNames[] = {LAM_MACRO_SYMMETRIES(LAM_NAME_ENTRY)};
 
 static const LamKey mesh_keys[] = {
-    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
+    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`."},
+    {NAME("macro.symmetry", LamMacroSymmetryNames), INTO(LamMacroSpec, symmetry), .default_value = "plane_strain",
+     .help =
+         "What the mesh is a section of: a body in `plane_strain`, or an `axisymmetric` one about X1 = 0, such as a "
+         "cylinder or a fruit between plates. Then X1 is the radius and X2 the axis, F33 = r/R, the cells' axes lie "
+         "along the hoop, and forces are those of the whole circle, in N instead of N/mm."},
     {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
     {LENGTH("macro.mesh.box", "mm"), INTO(LamMacroSpec, box), .size = 2, ABOVE(0),
      .default_words = "none: one of `box`, `disc`, `gmsh`", .example = "[10 mm, 10 mm]",
@@ -20,7 +26,7 @@ static const LamKey mesh_keys[] = {
      .help = "Radius of a disc about the origin. Its sides are `rim` and, of a part, `bottom` (X2 = 0) and `left` "
              "(X1 = 0)."},
     {NAME("macro.mesh.part", LamDiscPartNames), INTO(LamMacroSpec, disc), .default_value = "whole",
-     .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
+     .help = "Of a disc: `whole`, `half` (X2 >= 0), `right` (X1 >= 0) or `quarter` (both)."},
     {INTEGER("macro.mesh.elements"), INTO(LamMacroSpec, elements), .size = 2, FROM(1), TO(1000),
      .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
      .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
@@ -197,6 +203,18 @@ static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
 
 /* ---- the block ---- */
 
+/* The half plane of an axisymmetric body is X1 >= 0. */
+static PetscErrorCode CheckSymmetry(const LamNode *mesh, const LamMacroSpec *spec)
+{
+  const LamNode *part = LamNodeFind(mesh, "part");
+
+  PetscFunctionBeginUser;
+  if (spec->symmetry != LAM_AXISYMMETRIC || spec->source != LAM_MESH_DISC) PetscFunctionReturn(0);
+  LamSceneCheck(spec->disc == LAM_DISC_RIGHT || spec->disc == LAM_DISC_QUARTER, part ? part : LamNodeFind(mesh, "disc"),
+                "reaches beyond the axis X1 = 0 of an axisymmetric body; write part: right or part: quarter");
+  PetscFunctionReturn(0);
+}
+
 /*
   A body that inflates freely has zero total stress, and hence zero mean traction on every face, at any turgor:
   contact alone then holds no cell.
@@ -228,6 +246,7 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
   spec->inflate = (PetscBool)(scene->turgor != 0.0);
   spec->steps = DEFAULT_STEPS;
   PetscCall(LamSceneFill(block, &scene->scales, LamMacroSpec, spec));
+  PetscCall(CheckSymmetry(LamNodeFind(block, "mesh"), spec));
   PetscCall(CheckInflation(block, scene));
   LamSceneCheck(spec->area != LAM_AREA_INFLATED || spec->inflate, LamNodeFind(block, "reference"),
                 "needs the inflated body; write a turgor, and no inflate: false");
