@@ -2,7 +2,7 @@
   Private parts of the macroscale solver.
 
     mesh.c      distribution, numbering, named sets, geometry of elements
-    mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
+    mesh_box.c, mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
     element.c   kinds of elements: shape functions, Gauss points
     facet.c     geometry of the boundary facets
     boundary.c  prescribed displacements
@@ -347,6 +347,8 @@ PetscErrorCode LamMacroListNodes(LamMacro macro);
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
+/* mesh_box.c */
+PetscErrorCode LamMacroBoxCreate(MPI_Comm comm, const LamMacroSpec *spec, DM *dm);
 /* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
 /* mesh_gmsh.c */

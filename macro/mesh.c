@@ -415,17 +415,11 @@ static PetscErrorCode MapElements(LamMacro macro)
 static PetscErrorCode CreateMesh(MPI_Comm comm, const LamScene *scene, DM *dm)
 {
   const LamMacroSpec *spec = &scene->macro;
-  const PetscReal lower[2] = {0, 0};
   char at[LAM_PLACE_TEXT], key[LAM_PLACE_TEXT + 20];
 
   PetscFunctionBeginUser;
   if (spec->source == LAM_MESH_BOX)
-#if PETSC_VERSION_GE(3, 22, 0)
-    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, 0,
-                                  PETSC_TRUE, dm));
-#else
-    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, dm));
-#endif
+    PetscCall(LamMacroBoxCreate(comm, spec, dm));
   else if (spec->source == LAM_MESH_DISC)
     PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));
   else {

@@ -332,6 +332,7 @@ typedef struct {
   PetscReal box[2];         /* edges, in macro lengths (box[0] = 1) */
   LamDiscPart disc;         /* part of a disc about the origin; its radius is the macro length */
   PetscInt elements[2];     /* box: along X1, X2; disc: along an eighth of the rim, and between rim and inner square */
+  PetscReal grading[2];     /* box: edge of the last element over that of the first, along X1, X2; 0: alike */
   char gmsh[PETSC_MAX_PATH_LEN]; /* file; its unit of length is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];

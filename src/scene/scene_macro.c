@@ -31,6 +31,10 @@ static const LamKey mesh_keys[] = {
      .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
      .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
              "the square in its middle, half as wide."},
+    {REAL("macro.mesh.grading"), INTO(LamMacroSpec, grading), .size = 2, ABOVE(0), .default_words = "equal elements",
+     .example = "[10, 0.1]",
+     .help = "Of a box, along X1 and X2: the edge of the last element over that of the first. The edges between them are "
+             "a geometric series: small elements where a probe or a plate presses."},
     {PATH("macro.mesh.gmsh"), INTO(LamMacroSpec, gmsh), .default_words = "none: one of `box`, `disc`, `gmsh`",
      .example = "fruit.msh",
      .help = "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, "
@@ -82,7 +86,8 @@ LAM_KEY_TABLE(LamProgramKeys, program_keys);
 static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
 {
   static const char *const sources[] = {"box", "disc", "gmsh"};
-  const LamNode *elements = LamNodeFind(mesh, "elements"), *part = LamNodeFind(mesh, "part");
+  const LamNode *elements = LamNodeFind(mesh, "elements"), *part = LamNodeFind(mesh, "part"),
+                *grading = LamNodeFind(mesh, "grading");
   const LamNode *source = NULL, *unit;
   LamMacroSpec *spec = &scene->macro;
   PetscInt count = 0;
@@ -102,6 +107,8 @@ static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
   LamSceneCheck(count == 1, source, "the mesh is one of box, disc and gmsh; leave the others out");
   LamSceneCheck(!part || spec->source == LAM_MESH_DISC, part,
                 "belongs to a disc, which this mesh is not; leave it out");
+  LamSceneCheck(!grading || spec->source == LAM_MESH_BOX, grading,
+                "belongs to a box, which this mesh is not; leave it out");
   LamSceneCheck(!unit || spec->source == LAM_MESH_GMSH, unit,
                 "belongs to a Gmsh file, which this mesh is not; leave it out");
   if (spec->source == LAM_MESH_GMSH) {
