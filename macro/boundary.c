@@ -144,14 +144,18 @@ static void AddNode(LamMacro macro, const LamMacroNode *node, const PetscScalar 
   }
 }
 
-/* A node on the axis of an axisymmetric body stays there; *moved: an entry that moves it. */
+/* A node on the axis of an axisymmetric body stays there, which takes no force from any side; *moved: an entry that
+   moves it. */
 static void HoldOnAxis(LamMacro macro, const LamMacroNode *node, PetscInt *moved)
 {
   const PetscReal rounding = 1e-9; /* of mesh files, as in mesh.c */
   const LamConstraint constraint = {
       .point = node->point, .local = node->local, .normal = {1, 0}, .entry = -1, .border = -1};
 
-  if (macro->axisymmetric && PetscAbsReal(node->X[0]) < rounding) AddConstraint(macro, &constraint, moved);
+  if (!macro->axisymmetric || PetscAbsReal(node->X[0]) >= rounding) return;
+  AddConstraint(macro, &constraint, moved);
+  for (PetscInt k = macro->constraint_count - 1; k >= 0 && macro->constraints[k].local == node->local; k--)
+    if (PetscAbsReal(macro->constraints[k].normal[0]) > 0.5) macro->constraints[k].sides = 0;
 }
 
 /* Adds all prescribed displacements of the scene, measured from the present displacement; or only its symmetry. */

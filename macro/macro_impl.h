@@ -128,12 +128,14 @@ typedef struct {
   PetscReal load; /* fraction of the prescribed displacements; the turgor acts fully */
 } LamMacroProgress;
 
-/* A rigid obstacle: g(x) = n . x - height of a plate, |x - centre| - radius of an indenter; g >= 0 outside. */
+/* A rigid obstacle: g(x) = n . x - height of a plate, distance from the core - radius of the edge of an indenter
+   (obstacle.c); g >= 0 outside. */
 typedef struct {
   PetscInt entry;               /* of the scene's conditions */
   PetscInt side;                /* the step's name */
   PetscReal normal[2], start;   /* plate: normal into the body, and height at first contact */
   PetscReal first[2], place[2]; /* indenter: centre at first contact, and now; plate: place[0] is its present height */
+  PetscReal moved[2], accepted[2]; /* its displacement, now and in the last converged state */
 } LamObstacle;
 
 /* A node that may touch obstacles; stored on the rank that owns it. */
@@ -149,6 +151,8 @@ typedef struct {
 typedef struct {
   PetscInt obstacle;
   PetscReal gap, normal[2], curvature; /* second derivative of the gap along its tangent */
+  PetscReal friction;
+  PetscReal slid[2]; /* motion along it since the last converged state; set with friction */
 } LamTouch;
 
 /*
@@ -413,8 +417,12 @@ static inline PetscBool LamMacroIsObstacle(const LamBoundary *boundary)
 /* Places the obstacles at first contact with the present body. */
 PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
 void LamMacroObstaclesMove(LamMacro macro);
+/* Slip counts from where they are. */
+void LamMacroObstaclesAccept(LamMacro macro);
 void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step);
-LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[]);
+/* before: displacement of the last converged state, from which slip counts; NULL: of the converged state itself. */
+LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[],
+                         const PetscScalar before[]);
 
 /* rows.c */
 /* Converts the unbalanced force at displacement u into the residual. The rows are kept for the tangent at the same

@@ -175,7 +175,7 @@ static void FillPull(LamMacro macro, const PetscScalar u[], PetscInt side, Petsc
     }
     for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
       const LamObstacleNode *node = &macro->obstacle_nodes[k];
-      const LamTouch touch = LamMacroNearest(macro, node, u);
+      const LamTouch touch = LamMacroNearest(macro, node, u, NULL);
       PetscReal reaction[LAM_MAX_BOUNDARIES][2] = {{0}};
       if (!node->active) continue;
       LamMacroShareTouched(macro, node, &touch, unit[j], reaction);
@@ -205,7 +205,7 @@ static void TurnRows(LamMacro macro, const PetscScalar u[], PetscInt side, Petsc
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
     if (!node->active || node->constraint >= 0) continue;
-    const PetscBool own = (PetscBool)(macro->obstacles[LamMacroNearest(macro, node, u).obstacle].side == side);
+    const PetscBool own = (PetscBool)(macro->obstacles[LamMacroNearest(macro, node, u, NULL).obstacle].side == side);
     for (PetscInt i = 0; i < 2 && own; i++)
       if (!Prescribes(rows, i)) load[rows->local + i] = rows->add[2 * i + component];
     rows++;

@@ -166,6 +166,7 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
     macro->obstacle_nodes[k].accepted = macro->obstacle_nodes[k].active;
+  LamMacroObstaclesAccept(macro);
   PetscCall(LamResponderAccept(macro->responder));
   PetscFunctionReturn(0);
 }

@@ -54,8 +54,10 @@ typedef struct {
   LamMacroCertificate peak;                      /* of an earlier step, whose force was larger; in the last report */
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
   PetscInt obstacle_count;
-  PetscReal obstacle[LAM_MAX_BOUNDARIES][5]; /* plates and indenters, macro lengths: a point of the plate, its normal
-                                                into the body, 0; the indenter's centre, direction and radius */
+  PetscReal obstacle[LAM_MAX_BOUNDARIES][6]; /* plates and indenters, macro lengths: a point of the plate, its normal
+                                                into the body, 0, 0; the indenter's centre, that is of the sphere that
+                                                rounds its edge where it were on the axis, direction, radius, and the
+                                                radius of its edge, of a round one that of all of it */
   PetscReal work; /* of the boundary forces since the start, stress * length^2; axisymmetric: stress * length^3 */
   PetscReal debonded_fraction, max_gap; /* not finite if unknown to the responder */
   PetscReal turgor_mean;
@@ -109,8 +111,8 @@ LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal
 LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder); /* borrows it */
 /*
   Reactions are corrected, to first order, by the stress P of a second responder at the converged F of material points
-  (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips and
-  sealed cells: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
+  (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips,
+  sealed cells and friction: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
 
   LAM_CERTIFY_ALL: the reference is asked for all points of this rank at once, in the inflated body and in each step,
   and accepts. LAM_CERTIFY_SHARE: for one point at a time, at different times on the ranks; `reject` makes it start from

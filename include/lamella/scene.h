@@ -278,7 +278,7 @@ LAM_EXPORT extern const char *const LamMacroSymmetryNames[];
   X(LAM_BOUNDARY_SYMMETRY, "symmetry") /* straight side; no normal displacement, during inflation either */            \
   X(LAM_BOUNDARY_TRACTION, "traction") /* dead load, or `follower` */                                                  \
   X(LAM_BOUNDARY_PRESSURE, "pressure") /* a follower traction (0, -pressure) */                                        \
-  X(LAM_BOUNDARY_PLATE, "plate")       /* rigid obstacles, frictionless and unilateral */                              \
+  X(LAM_BOUNDARY_PLATE, "plate")       /* rigid, unilateral obstacles */                                               \
   X(LAM_BOUNDARY_INDENTER, "indenter")                                                                                 \
   X(LAM_BOUNDARY_GRIP, "grip") /* all nodes move alike; the total force is 0 in components that are not given */
 typedef enum { LAM_BOUNDARY_KINDS(LAM_ENUM_ENTRY) LAM_BOUNDARY_KIND_COUNT } LamBoundaryKind;
@@ -305,6 +305,9 @@ typedef struct {
   PetscBool follower;
   PetscReal normal[2]; /* unit vector from a plate into the body; 0: the normal of the straight side */
   PetscReal radius;    /* of an indenter */
+  PetscBool shaft;     /* the indenter is the flat end of a cylinder, with its shaft; else it is round */
+  PetscReal edge;      /* radius of the rounding between its end and its shaft */
+  PetscReal friction;  /* of a plate or an indenter: coefficient; infinite: stuck */
   PetscReal at[2];     /* reference point towards which the indenter's centre moves */
   LamHistory history;
 } LamBoundary;

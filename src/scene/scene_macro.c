@@ -33,8 +33,9 @@ static const LamKey mesh_keys[] = {
              "the square in its middle, half as wide."},
     {REAL("macro.mesh.grading"), INTO(LamMacroSpec, grading), .size = 2, ABOVE(0), .default_words = "equal elements",
      .example = "[10, 0.1]",
-     .help = "Of a box, along X1 and X2: the edge of the last element over that of the first. The edges between them are "
-             "a geometric series: small elements where a probe or a plate presses."},
+     .help =
+         "Of a box, along X1 and X2: the edge of the last element over that of the first. The edges between them are "
+         "a geometric series: small elements where a probe or a plate presses."},
     {PATH("macro.mesh.gmsh"), INTO(LamMacroSpec, gmsh), .default_words = "none: one of `box`, `disc`, `gmsh`",
      .example = "fruit.msh",
      .help = "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, "
