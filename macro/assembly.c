@@ -3,6 +3,8 @@
 
   Method. Total Lagrangian, quadratic elements (element.c): F = 1 + sum_a u_a (x) dN_a/dX at all points of the rank in
   one batch, then from the stored P and A f_ai = sum_q w P_ij dN_a/dX_j, K_ai,bk = sum_q w dN_a/dX_j A_ijkl dN_b/dX_l.
+  An axisymmetric body has F33 = 1 + sum_a u_a1 N_a/R besides, R = X1, and weights w of 2 pi R times the area:
+    f_a1 += w P33 N_a/R,  K_ai,bk += w dF_ij/du_ai (A_ij33 N_b/R delta_k1) + the transposed + w N_a/R A_3333 N_b/R.
   If lumens are sealed, their pressures are condensed out of both, element by element (sealed.c).
 
   Reference: Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2nd ed., ch. 9.
@@ -17,7 +19,7 @@ static const PetscReal LARGEST_CHANGE = 0.75; /* largest change of a deformation
 static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscScalar ue[])
 {
   const PetscInt dim = macro->dim, point = element->first + q;
-  const PetscReal *dN = LamMacroGradient(macro, element, q);
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q);
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
                   .turgor = macro->turgor * macro->turgor_share[point],
                   .cohesion = macro->lamella * macro->cohesion[point]};
@@ -28,6 +30,7 @@ static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscIn
       for (PetscInt j = 0; j < dim; j++) load.F[3 * i + j] += PetscRealPart(ue[dim * a + i]) * dN[dim * a + j];
     }
   }
+  for (PetscInt a = 0; a < element->kind->nodes && hoop; a++) load.F[8] += PetscRealPart(ue[dim * a]) * hoop[a];
   return load;
 }
 
@@ -63,14 +66,16 @@ static PetscErrorCode AllKnown(LamMacro macro, PetscBool *known)
   PetscFunctionReturn(0);
 }
 
-static void KeepResponse(PetscInt dim, const LamLoad *load, const LamResponse *response, LamMaterialPoint *point)
+static void KeepResponse(LamMacro macro, const LamLoad *load, const LamResponse *response, LamMaterialPoint *point)
 {
+  const PetscInt n = macro->strains;
+
   point->known = LamResponseHasFields(response);
   point->load = *load;
   memcpy(point->P, response->P, sizeof(point->P));
-  for (PetscInt ij = 0; ij < dim * dim; ij++) {
-    for (PetscInt kl = 0; kl < dim * dim; kl++)
-      point->A[ij * dim * dim + kl] = response->tangent[9 * (3 * (ij / dim) + ij % dim) + 3 * (kl / dim) + kl % dim];
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt k = 0; k < n; k++)
+      point->A[n * i + k] = response->tangent[9 * LamMacroEntry(macro, i) + LamMacroEntry(macro, k)];
   }
   LamMacroKeepFields(response, point->field);
   point->percolating = response->percolating_directions;
@@ -89,12 +94,14 @@ static PetscErrorCode DescribeTrouble(LamMacro macro, PetscInt64 failed, PetscIn
     const LamResponse *response = &macro->responses[point];
     const PetscReal *F = macro->loads[point].F, *X = &macro->place[macro->dim * point];
     const PetscReal mm = macro->scene->scales.macro_length * 1e3;
+    char hoop[32] = "";
+    if (macro->axisymmetric) PetscCall(PetscSNPrintf(hoop, sizeof(hoop), ", F33 = %.5g", (double)F[8]));
     PetscCall(PetscSNPrintf(macro->trouble, sizeof(macro->trouble),
                             "%s: %s; %" PetscInt64_FMT " points without response, the first in element %d, point "
-                            "%" PetscInt_FMT " at (%.4g, %.4g) mm: F = [%.5g %.5g %.5g %.5g], turgor %.4g MPa",
+                            "%" PetscInt_FMT " at (%.4g, %.4g) mm: F = [%.5g %.5g %.5g %.5g]%s, turgor %.4g MPa",
                             LamStatusNames[response->status], response->reason, failed, (int)element->number,
                             point - element->first, (double)(X[0] * mm), (double)(X[1] * mm), (double)F[0],
-                            (double)F[1], (double)F[3], (double)F[4],
+                            (double)F[1], (double)F[3], (double)F[4], hoop,
                             (double)(macro->loads[point].turgor * macro->scene->scales.stress * 1e-6)));
   }
   PetscCallMPI(MPI_Bcast(macro->trouble, sizeof(macro->trouble), MPI_CHAR, rank, macro->comm));
@@ -194,7 +201,7 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   PetscCall(CheckStop(macro));
   for (PetscInt p = 0; p < macro->point_count; p++) {
     PetscCall(LamMacroKeepSealed(macro, p));
-    KeepResponse(macro->dim, &macro->loads[p], &macro->responses[p], &macro->now[p]);
+    KeepResponse(macro, &macro->loads[p], &macro->responses[p], &macro->now[p]);
     macro->now[p].walls = macro->walls;
     if (macro->now[p].known) continue;
     /* elements are not sorted by number on a rank: report the lowest */
@@ -209,17 +216,20 @@ PetscErrorCode LamMacroEvaluate(LamMacro macro, Vec u, PetscBool *ok)
   PetscFunctionReturn(0);
 }
 
-/* Adds the forces of Gauss point q to those of its element, fe [nodes][dim]. */
-static void AddPointForce(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar fe[])
+/* Adds the forces of Gauss point q under the stress P to those of its element, fe [nodes][dim]. */
+static void AddPointForce(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscReal P[9],
+                          PetscScalar fe[])
 {
-  const PetscInt dim = macro->dim, point = element->first + q;
-  const PetscReal *dN = LamMacroGradient(macro, element, q), *P = macro->now[point].P, w = macro->weight[point];
+  const PetscInt dim = macro->dim;
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q),
+                  w = macro->weight[element->first + q];
 
   for (PetscInt a = 0; a < element->kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
       for (PetscInt j = 0; j < dim; j++) fe[dim * a + i] += w * P[3 * i + j] * dN[dim * a + j];
     }
   }
+  for (PetscInt a = 0; a < element->kind->nodes && hoop; a++) fe[dim * a] += w * P[8] * hoop[a];
 }
 
 PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale)
@@ -233,7 +243,8 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     PetscScalar fe[LAM_MACRO_DOFS] = {0};
-    for (PetscInt q = 0; q < element->kind->points; q++) AddPointForce(macro, element, q, fe);
+    for (PetscInt q = 0; q < element->kind->points; q++)
+      AddPointForce(macro, element, q, macro->now[element->first + q].P, fe);
     PetscCall(LamMacroCondense(macro, element, fe, NULL));
     for (PetscInt k = 0; k < element->kind->nodes * macro->dim; k++) sum += PetscRealPart(fe[k] * fe[k]);
     PetscCall(DMPlexVecSetClosure(macro->dm, NULL, local, macro->mesh_start + e, fe, ADD_VALUES));
@@ -248,7 +259,8 @@ PetscErrorCode LamMacroAssembleForce(LamMacro macro, Vec force, PetscReal *scale
 
 PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
 {
-  const PetscReal stress = LamStressScaleOf(&macro->scene->micro).plane;
+  const PetscReal stress = LamStressScaleOf(&macro->scene->micro).plane,
+                  P[9] = {stress, 0, 0, 0, stress, 0, 0, 0, stress};
   PetscReal sum = 0;
 
   PetscFunctionBeginUser;
@@ -256,10 +268,7 @@ PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
     const LamMacroElement *element = &macro->elements[e];
     const PetscInt dofs = element->kind->nodes * macro->dim;
     PetscReal fe[LAM_MACRO_DOFS] = {0};
-    for (PetscInt q = 0; q < element->kind->points; q++) {
-      const PetscReal *dN = LamMacroGradient(macro, element, q), w = macro->weight[element->first + q];
-      for (PetscInt k = 0; k < dofs; k++) fe[k] += w * stress * dN[k];
-    }
+    for (PetscInt q = 0; q < element->kind->points; q++) AddPointForce(macro, element, q, P, fe);
     for (PetscInt k = 0; k < dofs; k++) sum += fe[k] * fe[k];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, macro->comm));
@@ -271,18 +280,22 @@ PetscErrorCode LamMacroForceFloor(LamMacro macro, PetscReal *scale)
 static void AddPointTangent(LamMacro macro, const LamMacroElement *element, PetscInt q, PetscScalar Ke[])
 {
   const PetscInt dim = macro->dim, nodes = element->kind->nodes, dofs = nodes * dim, point = element->first + q;
-  const PetscReal *dN = LamMacroGradient(macro, element, q), *A = macro->now[point].A, w = macro->weight[point];
+  const PetscInt n = macro->strains;
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q),
+                  *A = macro->now[point].A, w = macro->weight[point];
 
   for (PetscInt b = 0; b < nodes; b++) {
     for (PetscInt k = 0; k < dim; k++) {
-      PetscReal S[LAM_MACRO_DIM * LAM_MACRO_DIM] = {0}; /* w A_ijkl dN_b/dX_l */
-      for (PetscInt ij = 0; ij < dim * dim; ij++) {
-        for (PetscInt l = 0; l < dim; l++) S[ij] += w * A[(ij * dim + k) * dim + l] * dN[dim * b + l];
+      PetscReal S[LAM_MACRO_STRAINS] = {0}; /* w A_ijkl dN_b/dX_l */
+      for (PetscInt ij = 0; ij < n; ij++) {
+        for (PetscInt l = 0; l < dim; l++) S[ij] += w * A[n * ij + dim * k + l] * dN[dim * b + l];
+        if (hoop && k == 0) S[ij] += w * A[n * ij + n - 1] * hoop[b];
       }
       for (PetscInt a = 0; a < nodes; a++) {
         for (PetscInt i = 0; i < dim; i++) {
           for (PetscInt j = 0; j < dim; j++) Ke[(dim * a + i) * dofs + dim * b + k] += S[dim * i + j] * dN[dim * a + j];
         }
+        if (hoop) Ke[dim * a * dofs + dim * b + k] += S[n - 1] * hoop[a];
       }
     }
   }

@@ -79,7 +79,8 @@ PetscErrorCode LamMacroBordersCreate(LamMacro macro, PetscBool scene)
   PetscFunctionReturn(0);
 }
 
-/* Adds the integrals of N_a over a facet of the controlled side to its nodes, and its length to *length. */
+/* Adds the integrals of N_a over a facet of the controlled side to its nodes, and its length to *length; of an
+   axisymmetric body over its area. */
 static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscInt component, Vec local,
                               PetscReal *length)
 {
@@ -93,6 +94,7 @@ static PetscErrorCode AddMean(LamMacro macro, const LamMacroFacet *facet, PetscI
     LamMacroFacetShape(q, N, dN, &weight);
     for (PetscInt a = 0; a < 6; a++) tau[a % 2] += dN[a / 2] * X[a];
     weight *= PetscSqrtReal(PetscSqr(tau[0]) + PetscSqr(tau[1]));
+    if (macro->axisymmetric) weight *= N[0] * X[0] + N[1] * X[2] + N[2] * X[4];
     for (PetscInt a = 0; a < 3; a++) share[2 * a + component] += weight * N[a];
     *length += weight;
   }

@@ -165,12 +165,27 @@ static void AddNode(LamMacro macro, const LamMacroNode *node, const PetscScalar 
   }
 }
 
+/* A node on the axis of an axisymmetric body stays there, which takes no force from any side; *moved: an entry that
+   moves it. */
+static void HoldOnAxis(LamMacro macro, const LamMacroNode *node, PetscInt *moved)
+{
+  const PetscReal rounding = 1e-9; /* of mesh files, as in mesh.c */
+  const LamConstraint constraint = {
+      .point = node->point, .local = node->local, .normal = {1, 0}, .entry = -1, .border = -1};
+
+  if (!macro->axisymmetric || PetscAbsReal(node->X[0]) >= rounding) return;
+  AddConstraint(macro, &constraint, moved);
+  for (PetscInt k = macro->constraint_count - 1; k >= 0 && macro->constraints[k].local == node->local; k--)
+    if (PetscAbsReal(macro->constraints[k].normal[0]) > 0.5) macro->constraints[k].sides = 0;
+}
+
 /* Adds all prescribed displacements of the scene, measured from the present displacement; or only its symmetry. */
 static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
   PetscReal normals[LAM_MAX_BOUNDARIES][2];
   PetscInt worst = -1; /* pair of entries that contradict each other, as one number */
+  PetscInt moved = -1; /* an entry that moves the axis */
   const PetscScalar *u;
 
   PetscFunctionBeginUser;
@@ -180,11 +195,18 @@ static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
       PetscCall(LamMacroStraightNormal(macro, &spec->boundary[b], normals[b]));
   }
   PetscCall(VecGetArrayRead(macro->u, &u));
-  for (PetscInt k = 0; k < macro->node_count; k++)
+  for (PetscInt k = 0; k < macro->node_count; k++) {
     if (macro->sets[macro->nodes[k].point - macro->mesh_start])
       AddNode(macro, &macro->nodes[k], u, (const PetscReal(*)[2])normals, symmetry_only, &worst);
+    HoldOnAxis(macro, &macro->nodes[k], &moved);
+  }
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MAX, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPIU_INT, MPI_MAX, macro->comm));
+  LamMacroRequire(moved < 0, macro, &spec->boundary[moved].place,
+                  "macro.boundary: on: %s: prescribes a displacement of the axis along X1, where an axisymmetric body "
+                  "cannot move; write 0 mm or free for it",
+                  spec->boundary[moved].on);
   LamMacroRequire(worst < 0, macro, &spec->boundary[worst / LAM_MAX_BOUNDARIES].place,
                   "macro.boundary: %s and %s prescribe different displacements where they meet; "
                   "leave that component `free` on one of them",
@@ -194,12 +216,13 @@ static PetscErrorCode AddNodes(LamMacro macro, PetscBool symmetry_only)
 
 /* ---- rigid motions ---- */
 
-/* normal . motion for the three rigid motions at X: along X1, along X2, rotation. */
-static void RigidMotions(const PetscReal normal[2], const PetscReal X[2], PetscReal motion[3])
+/* normal . motion for the three rigid motions at X: along X1, along X2, rotation. An axisymmetric body has only that
+   along X2. */
+static void RigidMotions(LamMacro macro, const PetscReal normal[2], const PetscReal X[2], PetscReal motion[3])
 {
-  motion[0] = normal[0];
+  motion[0] = macro->axisymmetric ? 0 : normal[0];
   motion[1] = normal[1];
-  motion[2] = normal[1] * X[0] - normal[0] * X[1];
+  motion[2] = macro->axisymmetric ? 0 : normal[1] * X[0] - normal[0] * X[1];
 }
 
 /* Gram matrix of the rigid motions at all constraints; the free component of a grip still restrains the rotation. */
@@ -212,7 +235,8 @@ static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
   for (PetscInt k = 0; k < macro->constraint_count; k++) {
     const LamConstraint *constraint = &macro->constraints[k];
     PetscReal motion[3];
-    RigidMotions(constraint->normal, &macro->position[macro->dim * (constraint->point - macro->mesh_start)], motion);
+    RigidMotions(macro, constraint->normal, &macro->position[macro->dim * (constraint->point - macro->mesh_start)],
+                 motion);
     for (int m = 0; m < 9 && constraint->border < 0; m++) gram[m] += motion[m / 3] * motion[m % 3];
     for (int power = 0; power < 3 && constraint->border >= 0; power++)
       border[constraint->border][power] += PetscPowRealInt(motion[2], power);
@@ -285,7 +309,7 @@ static PetscErrorCode HoldNode(LamMacro macro, const Place *place, const PetscRe
   PetscReal motion[3], square = 0;
 
   PetscFunctionBeginUser;
-  RigidMotions(normal, place->X, motion);
+  RigidMotions(macro, normal, place->X, motion);
   for (PetscInt b = 0; b < *rank; b++) {
     PetscReal along = 0;
     for (int m = 0; m < 3; m++) along += motion[m] * basis[b][m];
@@ -346,9 +370,13 @@ PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
   PetscCall(LamMacroBordersCreate(macro, PETSC_TRUE));
   PetscCall(AddNodes(macro, PETSC_FALSE));
   PetscCall(HeldMotions(macro, basis, &rank));
-  LamMacroRequire(rank == 3, macro, &macro->scene->macro.boundary[0].place, "macro.boundary: %s",
-                  "the displacements leave the body free to move or turn as a whole; prescribe both "
-                  "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
+  LamMacroRequire(rank == (macro->axisymmetric ? 1 : 3), macro, &macro->scene->macro.boundary[0].place,
+                  "macro.boundary: %s",
+                  macro->axisymmetric
+                      ? "the displacements leave the body free to move along X2, its axis; prescribe that component "
+                        "somewhere (plates and indenters do not count)"
+                      : "the displacements leave the body free to move or turn as a whole; prescribe both "
+                        "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
   PetscCall(LamMacroBordersStart(macro));
   PetscCall(LamMacroObstaclesCreate(macro));
   PetscFunctionReturn(0);

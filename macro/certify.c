@@ -169,9 +169,19 @@ PetscErrorCode LamMacroCertify(LamMacro macro, LamMacroStep *step)
   PetscFunctionReturn(0);
 }
 
+/* Its forces depend on the path that the body has gone. */
+static PetscBool HasFriction(const LamMacroSpec *spec)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (PetscInt b = 0; b < spec->boundary_count; b++) has = (PetscBool)(has || spec->boundary[b].friction > 0);
+  return has;
+}
+
 PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference, LamCertify which, PetscBool branches)
 {
-  const PetscBool impossible = (PetscBool)(macro->border_count || macro->scene->sealed || macro->water_law);
+  const PetscBool impossible =
+      (PetscBool)(macro->border_count || macro->scene->sealed || macro->water_law || HasFriction(&macro->scene->macro));
 
   PetscFunctionBeginUser;
   macro->reference = reference;
@@ -180,12 +190,12 @@ PetscErrorCode LamMacroSetReference(LamMacro macro, LamResponder reference, LamC
   macro->follows = (PetscBool)(branches && which == LAM_CERTIFY_SHARE);
   macro->uncertified[0] = '\0';
   if (impossible)
-    PetscCall(PetscStrncpy(macro->uncertified, "not of bodies with load control, free grips or sealed cells",
+    PetscCall(PetscStrncpy(macro->uncertified, "not of bodies with load control, free grips, sealed cells or friction",
                            sizeof(macro->uncertified)));
-  PetscCheck(
-      !impossible || which != LAM_CERTIFY_ALL, macro->comm, PETSC_ERR_USER_INPUT,
-      "%s: reactions of bodies with load control, free grips or sealed cells cannot be certified; leave that out",
-      macro->scene->path);
+  PetscCheck(!impossible || which != LAM_CERTIFY_ALL, macro->comm, PETSC_ERR_USER_INPUT,
+             "%s: reactions of bodies with load control, free grips, sealed cells or friction cannot be certified; "
+             "leave that out",
+             macro->scene->path);
   PetscFunctionReturn(0);
 }
 

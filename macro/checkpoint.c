@@ -208,6 +208,9 @@ PetscErrorCode LamMacroArchive(LamMacro macro, LamArchive archive)
   PetscCall(ArchiveState(macro, archive));
   PetscCall(ArchivePeak(macro, archive));
   PetscCall(ArchiveWaypoints(macro, archive));
-  if (LamArchiveIsReading(archive)) PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
+  if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
+  PetscCall(PetscArraycpy(macro->now, macro->accepted, macro->point_count));
+  PetscCall(LamMacroSetLoadFactor(macro, macro->progress.load));
+  LamMacroObstaclesAccept(macro);
   PetscFunctionReturn(0);
 }

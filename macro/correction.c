@@ -74,16 +74,15 @@ static PetscErrorCode ExpectErrors(LamMacro macro, const LamMaterialPoint points
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPIU_SUM, macro->comm));
   const PetscReal mean = sum[0] > 0 ? sum[0] / sum[2] : 1, stress = sum[1] / PetscMax(1, sum[2]);
   for (PetscInt p = 0; p < macro->point_count; p++)
-    expected[p] = points[p].field[LAM_POINT_INTERPOLATED] == 0
-                      ? 0
-                      : (Told(&points[p]) + mean) * (Norm(9, points[p].P) + stress);
+    expected[p] =
+        points[p].field[LAM_POINT_INTERPOLATED] == 0 ? 0 : (Told(&points[p]) + mean) * (Norm(9, points[p].P) + stress);
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Sizes(LamMacro macro, Work *work)
 {
   const LamSensitivity *s = &work->sensitivity;
-  const PetscInt n = macro->point_count, entries = macro->dim * macro->dim;
+  const PetscInt n = macro->point_count, entries = macro->strains;
   PetscReal *expected, *before, *size;
 
   PetscFunctionBeginUser;
@@ -153,26 +152,24 @@ typedef struct {
   char why[sizeof(((LamResponse *)0)->reason)];
 } Failed;
 
-/* dP [dim][dim] of a response against that of the run. */
+/* dP [strains] of a response against that of the run. */
 static void Compare(LamMacro macro, const LamResponse *response, const LamMaterialPoint *point, PetscReal dP[],
                     Failed *failed)
 {
-  const PetscInt dim = macro->dim;
-
   if (!LamResponseHasFields(response)) {
     if (!failed->count++) (void)PetscStrncpy(failed->why, response->reason, sizeof(failed->why));
     return;
   }
-  for (PetscInt ij = 0; ij < dim * dim; ij++) {
-    const PetscInt entry = 3 * (ij / dim) + ij % dim;
-    dP[ij] = response->P[entry] - point->P[entry];
+  for (PetscInt k = 0; k < macro->strains; k++) {
+    const PetscInt entry = LamMacroEntry(macro, k);
+    dP[k] = response->P[entry] - point->P[entry];
   }
 }
 
-/* All points at once: the reference keeps the state of each. dP [points][dim][dim]. */
+/* All points at once: the reference keeps the state of each. dP [points][strains]. */
 static PetscErrorCode SolveAll(LamMacro macro, const LamMaterialPoint points[], PetscReal dP[], Failed *failed)
 {
-  const PetscInt n = macro->point_count, entries = macro->dim * macro->dim;
+  const PetscInt n = macro->point_count, entries = macro->strains;
   LamLoad *loads;
 
   PetscFunctionBeginUser;
@@ -209,8 +206,8 @@ static PetscErrorCode Judge(LamMacro macro, const Failed *failed, LamMacroCertif
 /* Of a uniform inflated body one point stands for all: that of the rank with the lowest element. */
 static PetscErrorCode SolveUniform(LamMacro macro, PetscReal dP[], Failed *failed)
 {
-  const PetscInt entries = macro->dim * macro->dim, point = 0;
-  PetscReal lowest = INFINITY, one[LAM_MACRO_DIM * LAM_MACRO_DIM] = {0};
+  const PetscInt entries = macro->strains, point = 0;
+  PetscReal lowest = INFINITY, one[LAM_MACRO_STRAINS] = {0};
   PetscMPIInt rank = 0;
   PetscBool mine = PETSC_FALSE;
   LamResponse response;
@@ -237,7 +234,7 @@ PetscErrorCode LamMacroSolveInflated(LamMacro macro, LamMacroCertificate *certif
 
   PetscFunctionBeginUser;
   if (!inflated->points || inflated->dP || !(all || inflated->uniform)) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(macro->point_count * macro->dim * macro->dim, &dP));
+  PetscCall(PetscMalloc1(macro->point_count * macro->strains, &dP));
   if (all)
     PetscCall(SolveAll(macro, inflated->points, dP, &failed));
   else
@@ -262,7 +259,7 @@ static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
 static PetscErrorCode AddConstants(LamMacro macro, Work *work)
 {
   const LamSensitivity *s = &work->sensitivity;
-  const PetscInt values = macro->point_count * macro->dim * macro->dim;
+  const PetscInt values = macro->point_count * macro->strains;
 
   PetscFunctionBeginUser;
   if (!s->inflated || !macro->inflated.dP) PetscFunctionReturn(0);
@@ -274,7 +271,7 @@ static PetscErrorCode AddConstants(LamMacro macro, Work *work)
 /* Adds G : dP of a drawn point to its value. */
 static void AddValue(LamMacro macro, const PetscReal G[], PetscInt p, const PetscReal dP[], Work *work)
 {
-  const PetscInt entries = macro->dim * macro->dim;
+  const PetscInt entries = macro->strains;
 
   for (PetscInt c = 0; c < work->sensitivity.count; c++)
     work->value[c * work->total + work->place[p]] += Dot(entries, &G[(c * macro->point_count + p) * entries], dP);
@@ -284,7 +281,7 @@ static void AddValue(LamMacro macro, const PetscReal G[], PetscInt p, const Pets
 static PetscErrorCode AskPoint(LamMacro macro, PetscInt p, PetscInt step, Work *work, Failed *failed)
 {
   const PetscBool samples = SamplesInflated(macro, work);
-  PetscReal dP[LAM_MACRO_DIM * LAM_MACRO_DIM], before[LAM_MACRO_DIM * LAM_MACRO_DIM];
+  PetscReal dP[LAM_MACRO_STRAINS], before[LAM_MACRO_STRAINS];
   LamResponse response, inflated;
 
   PetscFunctionBeginUser;
@@ -300,7 +297,7 @@ static PetscErrorCode AskPoint(LamMacro macro, PetscInt p, PetscInt step, Work *
 /* Fills the values of the drawn points. */
 static PetscErrorCode Ask(LamMacro macro, PetscInt step, Work *work, Failed *failed)
 {
-  const PetscInt entries = macro->dim * macro->dim;
+  const PetscInt entries = macro->strains;
   const LamSensitivity *s = &work->sensitivity;
   PetscReal *dP = NULL;
 

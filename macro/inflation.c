@@ -7,6 +7,10 @@
   Hessian. Steps are at most STEP long, and halved if the energy does not decrease or there is no response. Then u =
   (F - 1) X + c + w x X, with the rigid motion fitted to the constraints. The guess costs one query per iteration; the
   body's own Newton iteration verifies it.
+
+  An axisymmetric body can be deformed alike everywhere only with F33 = F11 and without shear: then Psi is minimised
+  over F11 = F33 and F22. Where that leaves a stress, since the cells' axes are along the hoop, it balances that within
+  the body only with deformations that differ from place to place, which Newton's method finds.
 */
 #include <math.h>
 #include "macro_impl.h"
@@ -43,10 +47,11 @@ static PetscErrorCode FindMiddle(LamMacro macro, PetscMPIInt *rank, PetscBool *m
   PetscFunctionReturn(0);
 }
 
-static void Project(const LamResponse *response, Energy *energy)
+static void Project(LamMacro macro, const LamResponse *response, Energy *energy)
 {
-  static const int moves[4][2] = {
-      {0, 0}, {1, 1}, {3, 1}, {4, 2}}; /* a component of F and the corresponding component of e */
+  /* a component of F and the corresponding component of e */
+  static const int plane[4][2] = {{0, 0}, {1, 1}, {3, 1}, {4, 2}}, around[3][2] = {{0, 0}, {8, 0}, {4, 2}};
+  const int(*moves)[2] = macro->axisymmetric ? around : plane, count = macro->axisymmetric ? 3 : 4;
 
   energy->known = LamResponseHasFields(response);
   energy->energy = response->energy;
@@ -54,9 +59,9 @@ static void Project(const LamResponse *response, Energy *energy)
     energy->gradient[k] = 0;
     for (int l = 0; l < SYMMETRIC; l++) energy->hessian[SYMMETRIC * k + l] = 0;
   }
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < count; i++) {
     energy->gradient[moves[i][1]] += response->P[moves[i][0]];
-    for (int j = 0; j < 4; j++)
+    for (int j = 0; j < count; j++)
       energy->hessian[SYMMETRIC * moves[i][1] + moves[j][1]] += response->tangent[9 * moves[i][0] + moves[j][0]];
   }
 }
@@ -65,14 +70,14 @@ static void Project(const LamResponse *response, Energy *energy)
 static PetscErrorCode QueryAt(LamMacro macro, PetscMPIInt rank, PetscBool mine, PetscInt point,
                               const PetscReal e[SYMMETRIC], Energy *energy)
 {
-  const LamLoad load = {.F = {1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, 1},
+  const LamLoad load = {.F = {1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, macro->axisymmetric ? 1 + e[0] : 1},
                         .turgor = macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
                         .cohesion = macro->point_count ? macro->cohesion[point] : 0};
   LamResponse response;
 
   PetscFunctionBeginUser;
   PetscCall(LamResponderRespond(macro->responder, mine, &load, &point, &response));
-  if (mine) Project(&response, energy);
+  if (mine) Project(macro, &response, energy);
   PetscCallMPI(MPI_Bcast(energy, sizeof(*energy), MPI_BYTE, rank, macro->comm));
   PetscFunctionReturn(0);
 }
@@ -145,14 +150,16 @@ static PetscErrorCode FreeTissue(LamMacro macro, PetscReal e[SYMMETRIC], PetscBo
 /* Rigid motion c1, c2, w: least-squares fit of (F - 1) X plus the motion to the constraints. */
 static PetscErrorCode FitMotion(LamMacro macro, const PetscReal e[SYMMETRIC], PetscReal motion[3])
 {
-  PetscReal sums[12] = {0}; /* of the normal equations: matrix, right side */
+  const PetscReal plane = macro->axisymmetric ? 0 : 1; /* motions other than along X2 */
+  PetscReal sums[12] = {0};                            /* of the normal equations: matrix, right side */
   PetscBLASInt n = 3, one = 1, pivots[3], info;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < macro->constraint_count; k++) {
     const LamConstraint *held = &macro->constraints[k];
     const PetscReal *X = &macro->position[2 * (held->point - macro->mesh_start)];
-    const PetscReal row[3] = {held->normal[0], held->normal[1], held->normal[1] * X[0] - held->normal[0] * X[1]};
+    const PetscReal row[3] = {plane * held->normal[0], held->normal[1],
+                              plane * (held->normal[1] * X[0] - held->normal[0] * X[1])};
     const PetscReal miss =
         held->target - held->normal[0] * (e[0] * X[0] + e[1] * X[1]) - held->normal[1] * (e[1] * X[0] + e[2] * X[1]);
     for (int i = 0; i < 3; i++) {
@@ -161,6 +168,7 @@ static PetscErrorCode FitMotion(LamMacro macro, const PetscReal e[SYMMETRIC], Pe
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 12, MPIU_REAL, MPIU_SUM, macro->comm));
+  if (macro->axisymmetric) sums[0] = sums[8] = 1;
   PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&n, &one, sums, &n, pivots, &sums[9], &n, &info));
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the body is not held");
   PetscCall(PetscArraycpy(motion, &sums[9], 3));

@@ -14,7 +14,7 @@ static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
 {
   const LamMacroSeal *seal = macro->seal;
 
-  for (int i = 0; i < 16; i++) A[i] = macro->accepted[p].A[i];
+  for (int i = 0; i < 16; i++) A[i] = macro->accepted[p].A[macro->strains * (i / 4) + i % 4];
   if (!seal || !seal->closed) return;
   const LamSealedPoint *sealed = &seal->accepted[p];
   const PetscReal share = -1 / (LamMacroWaterSlope(macro, p) + sealed->curvature);

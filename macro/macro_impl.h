@@ -2,7 +2,7 @@
   Private parts of the macroscale solver.
 
     mesh.c      distribution, numbering, named sets, geometry of elements
-    mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
+    mesh_box.c, mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
     element.c   kinds of elements: shape functions, Gauss points
     facet.c     geometry of the boundary facets
     boundary.c  prescribed displacements
@@ -22,7 +22,8 @@
     fields.c    response fields stored for output, gathering of fields on rank 0
     checkpoint.c restart data
 
-  The dimension `dim` of the body is that of its mesh; only the responder assumes that it is 2 (plane strain).
+  The dimension `dim` of the body is that of its mesh; only the responder assumes that it is 2 (plane strain, or the
+  half plane of radius and axis of an axisymmetric body, whose F33 = 1 + u1 / X1).
 */
 #ifndef LAM_MACRO_IMPL_H
 #define LAM_MACRO_IMPL_H
@@ -36,7 +37,8 @@ enum {
   LAM_MACRO_DIM = 3, /* upper bounds of all that follows */
   LAM_MACRO_NODES = 27,
   LAM_MACRO_DOFS = LAM_MACRO_DIM * LAM_MACRO_NODES,
-  LAM_MACRO_MODES = LAM_MACRO_DIM + 1, /* of an element's pressure */
+  LAM_MACRO_STRAINS = LAM_MACRO_DIM * LAM_MACRO_DIM, /* components of F that vary */
+  LAM_MACRO_MODES = LAM_MACRO_DIM + 1,               /* of an element's pressure */
   LAM_MACRO_KINDS = 2,
   LAM_MACRO_SETS = 32, /* named boundaries; one bit each */
   LAM_MACRO_GROUPS = 32
@@ -56,7 +58,7 @@ typedef struct {
   const LamMacroKind *kind;
   PetscInt number;   /* in the undistributed mesh, independent of the number of ranks */
   PetscInt first;    /* first material point; its points are contiguous */
-  PetscInt gradient; /* offset of its dN/dX in LamMacro.gradient: [points][nodes][dim] */
+  PetscInt gradient; /* offset of its dN/dX in LamMacro.gradient: [points][nodes][dim]; over dim: of its N/X1 in hoop */
   PetscInt group;    /* named region; -1: none */
 } LamMacroElement;
 
@@ -82,16 +84,16 @@ typedef struct {
   PetscReal walls; /* factor on the moduli of the responder's tissue; NaN: outdated, the responder may respond
                       differently now */
   PetscReal P[9];
-  PetscReal A[81]; /* [dim][dim][dim][dim] dP_ij/dF_kl */
+  PetscReal A[81]; /* [strains][strains] dP/dF of the components that vary */
   PetscReal field[LAM_POINT_FIELD_COUNT];
   PetscInt percolating; /* percolating_directions */
 } LamMaterialPoint;
 
 /* Additional response data for sealed lumens, for the same load. */
 typedef struct {
-  PetscReal P_turgor[LAM_MACRO_DIM * LAM_MACRO_DIM]; /* [dim][dim] dP/dp */
-  PetscReal lumen;                                   /* -dPsi/dp */
-  PetscReal curvature;                               /* d2Psi/dp2 */
+  PetscReal P_turgor[LAM_MACRO_STRAINS]; /* [strains] dP/dp */
+  PetscReal lumen;                       /* -dPsi/dp */
+  PetscReal curvature;                   /* d2Psi/dp2 */
 } LamSealedPoint;
 
 /* Sealed lumens; allocated if the scene has them. */
@@ -139,12 +141,14 @@ typedef struct {
   PetscReal load; /* fraction of the prescribed displacements; the turgor acts fully */
 } LamMacroProgress;
 
-/* A rigid obstacle: g(x) = n . x - height of a plate, |x - centre| - radius of an indenter; g >= 0 outside. */
+/* A rigid obstacle: g(x) = n . x - height of a plate, distance from the core - radius of the edge of an indenter
+   (obstacle.c); g >= 0 outside. */
 typedef struct {
   PetscInt entry;               /* of the scene's conditions */
   PetscInt side;                /* the step's name */
   PetscReal normal[2], start;   /* plate: normal into the body, and height at first contact */
   PetscReal first[2], place[2]; /* indenter: centre at first contact, and now; plate: place[0] is its present height */
+  PetscReal moved[2], accepted[2]; /* its displacement, now and in the last converged state */
 } LamObstacle;
 
 /* A node that may touch obstacles; stored on the rank that owns it. */
@@ -160,6 +164,8 @@ typedef struct {
 typedef struct {
   PetscInt obstacle;
   PetscReal gap, normal[2], curvature; /* second derivative of the gap along its tangent */
+  PetscReal friction;
+  PetscReal slid[2]; /* motion along it since the last converged state; set with friction */
 } LamTouch;
 
 /*
@@ -175,7 +181,7 @@ typedef struct {
 typedef struct {
   LamMaterialPoint *points; /* [points]; NULL: not kept */
   PetscBool uniform;        /* they are all alike */
-  PetscReal *dP;            /* [points][dim][dim] stress of the reference less that of the run; NULL: not known */
+  PetscReal *dP;            /* [points][strains] stress of the reference less that of the run; NULL: not known */
   KSP solver;               /* of its transposed tangent with its rows */
   PetscInt row_count;
   LamNodeRows *rows;
@@ -203,7 +209,7 @@ typedef struct {
 typedef struct {
   PetscInt count; /* components that depend on it */
   PetscInt side[2 * LAM_MAX_BOUNDARIES], component[2 * LAM_MAX_BOUNDARIES];
-  PetscReal *G;        /* [count][points][dim][dim], at most 2 boundary_count */
+  PetscReal *G;        /* [count][points][strains], at most 2 boundary_count */
   PetscReal *inflated; /* likewise of the inflated body; NULL: there is none */
 } LamSensitivity;
 
@@ -239,6 +245,8 @@ struct LamMacro_s {
   /* mesh */
   DM dm;
   PetscInt dim;
+  PetscBool axisymmetric;
+  PetscInt strains; /* components of F that vary: dim * dim, then F33 of an axisymmetric body */
   LamMacroKind kinds[LAM_MACRO_KINDS];
   PetscInt kind_count;
   PetscInt element_count; /* of this rank: the first mesh points */
@@ -249,6 +257,7 @@ struct LamMacro_s {
   PetscInt node_count;
   LamMacroNode *nodes; /* owned by this rank, in the order of their mesh points */
   PetscReal *gradient; /* dN/dX, see LamMacroElement */
+  PetscReal *hoop;     /* N/X1 of an axisymmetric body, likewise; else NULL */
   PetscInt set_count;  /* named boundaries */
   char set_name[LAM_MACRO_SETS][LAM_NAME_LENGTH];
   unsigned int *sets; /* [mesh points] bit k: on set k */
@@ -260,7 +269,7 @@ struct LamMacro_s {
   /* material points */
   PetscInt point_count;
   PetscInt *point_element; /* [points] element that contains the point */
-  PetscReal *weight;       /* [points] area */
+  PetscReal *weight;       /* [points] area; of an axisymmetric body volume, of the whole circle */
   PetscReal *place;        /* [points][dim] reference position */
   PetscReal *turgor_share; /* [points] turgor of the tissue there, to be multiplied by `turgor` */
   PetscReal *cohesion;     /* [points] */
@@ -356,6 +365,8 @@ PetscErrorCode LamMacroListNodes(LamMacro macro);
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
+/* mesh_box.c */
+PetscErrorCode LamMacroBoxCreate(MPI_Comm comm, const LamMacroSpec *spec, DM *dm);
 /* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
 /* mesh_gmsh.c */
@@ -392,7 +403,7 @@ PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[]);
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step);
 /* Index of a condition's name among these. */
 PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary);
-/* Prescribes sides of symmetry, and the minimum of components that prevents the remaining rigid motions. */
+/* Prescribes sides of symmetry, the axis, and the minimum of components that prevents the remaining rigid motions. */
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro);
 /*
   Prescribes the scene's displacements, measured from the present ones, and places the obstacles at first contact.
@@ -407,8 +418,8 @@ PetscErrorCode LamMacroSetLoadFactor(LamMacro macro, PetscReal load_factor);
 PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external);
 /* Factor of all tractions in addition to their histories: the unknown of load control, else 1; 0 during inflation. */
 PetscReal LamMacroTractionFactor(LamMacro macro);
-/* Adds minus the derivative of the nodal forces of the tractions. */
-PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent);
+/* Adds minus the derivative of the nodal forces of the tractions at displacement u. */
+PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Vec u, Mat tangent);
 /* Total force of one condition's tractions at displacement u, all ranks. */
 PetscErrorCode LamMacroTractionSum(LamMacro macro, PetscInt entry, Vec u, PetscReal sum[2]);
 
@@ -420,8 +431,12 @@ static inline PetscBool LamMacroIsObstacle(const LamBoundary *boundary)
 /* Places the obstacles at first contact with the present body. */
 PetscErrorCode LamMacroObstaclesCreate(LamMacro macro);
 void LamMacroObstaclesMove(LamMacro macro);
+/* Slip counts from where they are. */
+void LamMacroObstaclesAccept(LamMacro macro);
 void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step);
-LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[]);
+/* before: displacement of the last converged state, from which slip counts; NULL: of the converged state itself. */
+LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[],
+                         const PetscScalar before[]);
 
 /* rows.c */
 /* Converts the unbalanced force at displacement u into the residual. The rows are kept for the tangent at the same
@@ -494,6 +509,16 @@ PetscErrorCode LamMacroSensitivityCreate(LamMacro macro, LamSensitivity *s, Pets
 PetscErrorCode LamMacroSensitivityDestroy(LamSensitivity *s);
 
 /* assembly.c */
+/* Row-major entry of F of component k = 0..strains-1. */
+static inline PetscInt LamMacroEntry(LamMacro macro, PetscInt k)
+{
+  return k < macro->dim * macro->dim ? 3 * (k / macro->dim) + k % macro->dim : 8;
+}
+/* N/X1 [nodes] at Gauss point q of an element of an axisymmetric body, dF33/du1; else NULL. */
+static inline const PetscReal *LamMacroHoop(LamMacro macro, const LamMacroElement *element, PetscInt q)
+{
+  return macro->axisymmetric ? &macro->hoop[element->gradient / macro->dim + q * element->kind->nodes] : NULL;
+}
 /* dN/dX [nodes][dim] at Gauss point q of an element. */
 static inline const PetscReal *LamMacroGradient(LamMacro macro, const LamMacroElement *element, PetscInt q)
 {

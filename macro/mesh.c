@@ -307,7 +307,7 @@ static PetscReal Invert(PetscInt dim, const PetscReal J[], PetscReal inverse[])
   return det;
 }
 
-/* dN/dX, weight and position of one Gauss point; X [nodes][dim]. */
+/* dN/dX, weight and position of one Gauss point, N/X1 of an axisymmetric body; X [nodes][dim]. */
 static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, PetscInt q, const PetscReal X[])
 {
   const LamMacroKind *kind = element->kind;
@@ -331,6 +331,11 @@ static PetscErrorCode MapPoint(LamMacro macro, const LamMacroElement *element, P
       "mesh there",
       (int)element->number, (double)place[0], (double)place[1]);
   macro->weight[element->first + q] = kind->weight[q] * det;
+  if (macro->axisymmetric) {
+    PetscReal *hoop = &macro->hoop[element->gradient / dim + q * kind->nodes];
+    macro->weight[element->first + q] *= 2 * PETSC_PI * place[0];
+    for (PetscInt a = 0; a < kind->nodes; a++) hoop[a] = N[a] / place[0];
+  }
   for (PetscInt a = 0; a < kind->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++) {
       for (PetscInt j = 0; j < dim; j++) dNdX[dim * a + i] += dN[dim * a + j] * inverse[dim * j + i];
@@ -355,6 +360,25 @@ static PetscErrorCode ElementPositions(LamMacro macro, PetscInt e, PetscReal X[]
   PetscFunctionReturn(0);
 }
 
+/* The half plane of an axisymmetric body has no points beyond its axis. */
+static PetscErrorCode CheckRadii(LamMacro macro)
+{
+  const PetscReal rounding = 1e-9; /* of mesh files, whose lengths are of order one */
+  PetscReal least = PETSC_INFINITY;
+
+  PetscFunctionBeginUser;
+  if (!macro->axisymmetric) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < macro->mesh_end - macro->mesh_start; p++)
+    if (macro->node_number[p] >= 0) least = PetscMin(least, macro->position[macro->dim * p]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, macro->comm));
+  LamMacroRequire(
+      least > -rounding, macro, &macro->scene->macro.mesh_place,
+      "macro.mesh: has points up to X1 = %g in its unit, but X1 is the radius of an axisymmetric body; mesh "
+      "the half X1 >= 0 alone, or leave symmetry out",
+      (double)least);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MapElements(LamMacro macro)
 {
   PetscInt gradients = 0;
@@ -372,6 +396,7 @@ static PetscErrorCode MapElements(LamMacro macro)
   }
   PetscCall(PetscCalloc4(gradients, &macro->gradient, macro->point_count, &macro->weight,
                          macro->point_count * macro->dim, &macro->place, macro->point_count, &macro->point_element));
+  if (macro->axisymmetric) PetscCall(PetscMalloc1(gradients / macro->dim, &macro->hoop));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     const LamMacroElement *element = &macro->elements[e];
     PetscReal X[LAM_MACRO_DOFS];
@@ -390,17 +415,11 @@ static PetscErrorCode MapElements(LamMacro macro)
 static PetscErrorCode CreateMesh(MPI_Comm comm, const LamScene *scene, DM *dm)
 {
   const LamMacroSpec *spec = &scene->macro;
-  const PetscReal lower[2] = {0, 0};
   char at[LAM_PLACE_TEXT], key[LAM_PLACE_TEXT + 20];
 
   PetscFunctionBeginUser;
   if (spec->source == LAM_MESH_BOX)
-#if PETSC_VERSION_GE(3, 22, 0)
-    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, 0,
-                                  PETSC_TRUE, dm));
-#else
-    PetscCall(DMPlexCreateBoxMesh(comm, 2, PETSC_FALSE, spec->elements, lower, spec->box, NULL, PETSC_TRUE, dm));
-#endif
+    PetscCall(LamMacroBoxCreate(comm, spec, dm));
   else if (spec->source == LAM_MESH_DISC)
     PetscCall(LamMacroDiscCreate(comm, spec->disc, spec->elements, dm));
   else {
@@ -479,11 +498,14 @@ PetscErrorCode LamMacroMeshCreate(LamMacro macro)
   PetscFunctionBeginUser;
   PetscCall(CreateMesh(macro->comm, macro->scene, &macro->dm));
   PetscCall(DMGetDimension(macro->dm, &macro->dim));
+  macro->axisymmetric = (PetscBool)(macro->scene->macro.symmetry == LAM_AXISYMMETRIC);
+  macro->strains = macro->dim * macro->dim + (macro->axisymmetric ? 1 : 0);
   PetscCall(CompleteLabels(macro->dm));
   PetscCall(Distribute(macro));
   PetscCall(NameSets(macro));
   PetscCall(ListFacets(macro));
   PetscCall(LocateNodes(macro));
+  PetscCall(CheckRadii(macro));
   PetscCall(MapElements(macro));
   PetscCall(NumberUnknowns(macro));
   PetscFunctionReturn(0);
@@ -501,6 +523,7 @@ PetscErrorCode LamMacroMeshDestroy(LamMacro macro)
   PetscCall(PetscFree(macro->sets));
   PetscCall(PetscFree(macro->facets));
   PetscCall(PetscFree4(macro->gradient, macro->weight, macro->place, macro->point_element));
+  PetscCall(PetscFree(macro->hoop));
   PetscCall(DMDestroy(&macro->dm));
   PetscFunctionReturn(0);
 }

@@ -1,6 +1,6 @@
 /*
-  A disc about the origin, or the half or quarter of it with X2 >= 0 (and X1 >= 0): an inner square of m x m elements
-  per quadrant, and around it k layers that blend from the square to the circle.
+  A disc about the origin, or the part of it with X2 >= 0, X1 >= 0 or both: an inner square of m x m elements per
+  quadrant, and around it k layers that blend from the square to the circle.
 
   Vertices are numbered by grid position (i, j) in the full square, |i|, |j| <= m, and by layer along its perimeter;
   vertices that no element of the part uses are omitted.
@@ -37,7 +37,7 @@ static PetscInt RingIndex(const Disc *disc, PetscInt layer, PetscInt s)
   const PetscInt m = disc->m;
   PetscInt i, j;
 
-  s %= 8 * m;
+  s = (s + 8 * m) % (8 * m);
   Perimeter(m, s, &i, &j);
   return layer ? (2 * m + 1) * (2 * m + 1) + (layer - 1) * 8 * m + s : SquareIndex(disc, i, j);
 }
@@ -64,7 +64,7 @@ static PetscInt RingVertex(Disc *disc, PetscInt layer, PetscInt s)
   const PetscReal angle = 0.25 * PETSC_PI * s / disc->m, share = (PetscReal)layer / disc->k;
   PetscInt i, j;
 
-  Perimeter(disc->m, s % (8 * disc->m), &i, &j);
+  Perimeter(disc->m, (s + 8 * disc->m) % (8 * disc->m), &i, &j);
   const PetscReal X[2] = {(1 - share) * SQUARE * i / disc->m + share * PetscCosReal(angle),
                           (1 - share) * SQUARE * j / disc->m + share * PetscSinReal(angle)};
   return Vertex(disc, RingIndex(disc, layer, s), X);
@@ -72,9 +72,10 @@ static PetscInt RingVertex(Disc *disc, PetscInt layer, PetscInt s)
 
 static void FillDisc(Disc *disc)
 {
-  const PetscInt m = disc->m, left = disc->part == LAM_DISC_QUARTER ? 0 : -m,
-                 low = disc->part == LAM_DISC_WHOLE ? -m : 0;
-  const PetscInt around = disc->part == LAM_DISC_WHOLE ? 8 * m : disc->part == LAM_DISC_HALF ? 4 * m : 2 * m;
+  const PetscBool right = (PetscBool)(disc->part == LAM_DISC_RIGHT || disc->part == LAM_DISC_QUARTER);
+  const PetscBool upper = (PetscBool)(disc->part == LAM_DISC_HALF || disc->part == LAM_DISC_QUARTER);
+  const PetscInt m = disc->m, left = right ? 0 : -m, low = upper ? 0 : -m;
+  const PetscInt first = right && !upper ? -2 * m : 0, around = (right ? 1 : 2) * (upper ? 1 : 2) * 2 * m;
   PetscInt *corner = disc->corners;
 
   for (PetscInt i = left; i < m; i++) {
@@ -83,7 +84,7 @@ static void FillDisc(Disc *disc)
     }
   }
   for (PetscInt layer = 0; layer < disc->k; layer++) {
-    for (PetscInt s = 0; s < around; s++) {
+    for (PetscInt s = first; s < first + around; s++) {
       for (int c = 0; c < 4; c++) *corner++ = RingVertex(disc, layer + (c == 1 || c == 2), s + (c > 1));
     }
   }

@@ -1,11 +1,23 @@
 /*
-  Rigid, frictionless obstacles: flat plates and round indenters, in unilateral contact with the nodes of a named side.
+  Rigid obstacles, with or without friction (rows.c): flat plates and indenters, in unilateral contact with the nodes of
+  a named side.
+
+  An indenter is all that is nearer to its core than the radius of its edge. The core of a round one is its centre; that
+  of a cylinder with a flat end is the cylinder less this distance all around, a half strip in the plane of the mesh.
+  The gap is the distance from the core less the radius of the edge; within the core the distance to its nearest side
+  counts, negative, but to its end if the node was before that in the last converged state. Around a sharp edge, of
+  radius 0, the larger of the distances from the planes of end and shaft takes the place of the distance, whose normal
+  has no value at the edge itself.
 
   Each node is constrained by its nearest obstacle only: simultaneous contact of a node with two obstacles (a wedge)
   is not covered.
 */
 #include <math.h>
 #include "macro_impl.h"
+
+/* Rounding of places, macro lengths: above it (PENETRATION in stepping.c), end and shaft of an indenter are told apart.
+ */
+static const PetscReal TIE = 1e-9;
 
 /* Nodes of the obstacles' sides that have at most one prescribed direction; macro->constraints is in their order. */
 static PetscErrorCode ListNodes(LamMacro macro)
@@ -32,12 +44,22 @@ static PetscErrorCode ListNodes(LamMacro macro)
   PetscFunctionReturn(0);
 }
 
+/* Radius of an indenter's edge, and half the width of its core. */
+static PetscReal Edge(const LamBoundary *boundary, PetscReal *half)
+{
+  const PetscReal edge = boundary->shaft ? boundary->edge : boundary->radius;
+
+  *half = boundary->radius - edge;
+  return edge;
+}
+
 /* Distance along its normal or path by which the obstacle moves until it touches the first of its nodes. */
 static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, const PetscScalar u[])
 {
   const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
   const PetscReal *d = obstacle->normal; /* for an indenter the direction of its path */
-  PetscReal reach = PETSC_INFINITY;
+  PetscReal reach = PETSC_INFINITY, half;
+  const PetscReal edge = Edge(boundary, &half);
 
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
@@ -47,11 +69,11 @@ static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, 
       x[i] = macro->position[2 * (node->point - macro->mesh_start) + i] + PetscRealPart(u[node->local + i]) -
              boundary->at[i];
     along = x[0] * d[0] + x[1] * d[1];
-    aside = x[0] * d[1] - x[1] * d[0];
+    aside = PetscMax(0, PetscAbsReal(x[0] * d[1] - x[1] * d[0]) - half);
     if (boundary->kind == LAM_BOUNDARY_PLATE)
       reach = PetscMin(reach, along);
-    else if (PetscAbsReal(aside) < boundary->radius)
-      reach = PetscMin(reach, along - PetscSqrtReal(PetscSqr(boundary->radius) - PetscSqr(aside)));
+    else if (aside <= edge)
+      reach = PetscMin(reach, along - PetscSqrtReal(PetscSqr(edge) - PetscSqr(aside)));
   }
   return reach;
 }
@@ -103,6 +125,7 @@ PetscErrorCode LamMacroObstaclesCreate(LamMacro macro)
   }
   PetscCall(VecRestoreArrayRead(macro->u, &u));
   LamMacroObstaclesMove(macro);
+  LamMacroObstaclesAccept(macro);
   PetscFunctionReturn(0);
 }
 
@@ -111,13 +134,20 @@ void LamMacroObstaclesMove(LamMacro macro)
   for (PetscInt o = 0; o < macro->obstacle_count; o++) {
     LamObstacle *obstacle = &macro->obstacles[o];
     const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
-    const PetscReal factor = LamHistoryFactor(&boundary->history, macro->parameter), *d = boundary->displacement;
+    const PetscReal factor = LamHistoryFactor(&boundary->history, macro->parameter), *d = obstacle->moved;
+    for (int i = 0; i < 2; i++) obstacle->moved[i] = factor * boundary->displacement[i];
     if (boundary->kind == LAM_BOUNDARY_PLATE) {
-      obstacle->place[0] = obstacle->start + factor * (d[0] * obstacle->normal[0] + d[1] * obstacle->normal[1]);
+      obstacle->place[0] = obstacle->start + d[0] * obstacle->normal[0] + d[1] * obstacle->normal[1];
     } else {
-      for (int i = 0; i < 2; i++) obstacle->place[i] = obstacle->first[i] + factor * d[i];
+      for (int i = 0; i < 2; i++) obstacle->place[i] = obstacle->first[i] + d[i];
     }
   }
+}
+
+void LamMacroObstaclesAccept(LamMacro macro)
+{
+  for (PetscInt o = 0; o < macro->obstacle_count; o++)
+    for (int i = 0; i < 2; i++) macro->obstacles[o].accepted[i] = macro->obstacles[o].moved[i];
 }
 
 void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step)
@@ -132,10 +162,71 @@ void LamMacroObstaclesDescribe(LamMacro macro, LamMacroStep *step)
       step->obstacle[o][2 + i] = obstacle->normal[i];
     }
     step->obstacle[o][4] = plate ? 0 : boundary->radius;
+    step->obstacle[o][5] = plate ? 0 : boundary->shaft ? boundary->edge : boundary->radius;
   }
 }
 
-LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[])
+/* Gap, normal and curvature of an indenter at x; was_before: it was before the flat end in the last converged state. */
+static void TouchIndenter(const LamObstacle *obstacle, const LamBoundary *boundary, const PetscReal x[2],
+                          PetscBool was_before, LamTouch *touch)
+{
+  const PetscReal *d = obstacle->normal, from[2] = {x[0] - obstacle->place[0], x[1] - obstacle->place[1]};
+  const PetscReal behind = -from[0] * d[0] - from[1] * d[1], aside = from[1] * d[0] - from[0] * d[1];
+  PetscReal half, side, back; /* of x from the nearest point of the core */
+  const PetscReal edge = Edge(boundary, &half);
+
+  side = aside - PetscMin(PetscMax(aside, -half), half);
+  back = boundary->shaft ? PetscMin(behind, 0) : behind;
+  const PetscBool corner = (PetscBool)(side != 0 && back != 0 && edge > 0);
+  if (boundary->shaft && side == 0 && back == 0) { /* within the core */
+    const PetscReal depth = half - PetscAbsReal(aside), sign = aside < 0 ? -1 : 1;
+    const PetscBool front = (PetscBool)(was_before || behind <= depth + TIE);
+    touch->gap = -(front ? behind : depth) - edge;
+    touch->normal[0] = front ? d[0] : -sign * d[1];
+    touch->normal[1] = front ? d[1] : sign * d[0];
+    return;
+  }
+  if (boundary->shaft && edge == 0 && side != 0 && back != 0) { /* beside a sharp edge */
+    if (-back >= PetscAbsReal(side))
+      side = 0;
+    else
+      back = 0;
+  }
+  const PetscReal distance = PetscMax(hypot(side, back), PETSC_SMALL);
+  touch->gap = distance - edge;
+  touch->curvature = corner || !boundary->shaft ? 1 / distance : 0;
+  touch->normal[0] = (-side * d[1] - back * d[0]) / distance;
+  touch->normal[1] = (side * d[0] - back * d[1]) / distance;
+}
+
+/* Whether a node was before the end of an indenter with a shaft in the last converged state. Then it is that end that
+   has come upon it, even if the shaft is nearer now. */
+static PetscBool WasBefore(LamMacro macro, const LamObstacle *obstacle, const LamObstacleNode *node,
+                           const PetscScalar before[])
+{
+  const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
+  const PetscReal *X = &macro->position[2 * (node->point - macro->mesh_start)];
+  PetscReal along = 0;
+
+  if (!before || !boundary->shaft) return PETSC_FALSE;
+  for (int i = 0; i < 2; i++)
+    along += (X[i] + PetscRealPart(before[node->local + i]) - obstacle->first[i] - obstacle->accepted[i]) *
+             obstacle->normal[i];
+  return along > boundary->edge - TIE ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Motion of a node along its obstacle since the last converged state. */
+static void FindSlid(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[], const PetscScalar before[],
+                     LamTouch *touch)
+{
+  const LamObstacle *obstacle = &macro->obstacles[touch->obstacle];
+
+  for (int i = 0; i < 2; i++)
+    touch->slid[i] = PetscRealPart(u[node->local + i]) - PetscRealPart(before[node->local + i]) - obstacle->moved[i] +
+                     obstacle->accepted[i];
+}
+
+LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const PetscScalar u[], const PetscScalar before[])
 {
   const PetscReal *X = &macro->position[2 * (node->point - macro->mesh_start)];
   LamTouch nearest = {.gap = PETSC_INFINITY};
@@ -143,19 +234,16 @@ LamTouch LamMacroNearest(LamMacro macro, const LamObstacleNode *node, const Pets
   for (PetscInt o = 0; o < macro->obstacle_count; o++) {
     const LamObstacle *obstacle = &macro->obstacles[o];
     const LamBoundary *boundary = &macro->scene->macro.boundary[obstacle->entry];
-    LamTouch touch = {.obstacle = o, .normal = {obstacle->normal[0], obstacle->normal[1]}};
+    LamTouch touch = {
+        .obstacle = o, .normal = {obstacle->normal[0], obstacle->normal[1]}, .friction = boundary->friction};
     const PetscReal x[2] = {X[0] + PetscRealPart(u[node->local]), X[1] + PetscRealPart(u[node->local + 1])};
     if (!(node->obstacles >> o & 1)) continue;
-    if (boundary->kind == LAM_BOUNDARY_PLATE) {
+    if (boundary->kind == LAM_BOUNDARY_PLATE)
       touch.gap = x[0] * touch.normal[0] + x[1] * touch.normal[1] - obstacle->place[0];
-    } else {
-      const PetscReal from[2] = {x[0] - obstacle->place[0], x[1] - obstacle->place[1]},
-                      distance = PetscMax(PetscSqrtReal(PetscSqr(from[0]) + PetscSqr(from[1])), PETSC_SMALL);
-      touch.gap = distance - boundary->radius;
-      touch.curvature = 1 / distance;
-      for (int i = 0; i < 2; i++) touch.normal[i] = from[i] / distance;
-    }
+    else
+      TouchIndenter(obstacle, boundary, x, WasBefore(macro, obstacle, node, before), &touch);
     if (touch.gap < nearest.gap) nearest = touch;
   }
+  if (before && nearest.friction > 0) FindSlid(macro, node, u, before, &nearest);
   return nearest;
 }

@@ -69,6 +69,9 @@ void LamMacroShareTouched(LamMacro macro, const LamObstacleNode *node, const Lam
   const PetscInt own = held ? 1 : 0;
   PetscReal directions[2][2], part[2];
 
+  for (PetscInt i = 0; i < 2 && !held && touch->friction > 0; i++)
+    reaction[macro->obstacles[touch->obstacle].side][i] += force[i];
+  if (!held && touch->friction > 0) return;
   for (PetscInt i = 0; i < 2; i++) {
     directions[own][i] = touch->normal[i];
     if (held) directions[0][i] = held->normal[i];
@@ -91,7 +94,7 @@ static void AddNodes(LamMacro macro, const PetscScalar u[], const PetscScalar r[
   }
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
-    const LamTouch touch = LamMacroNearest(macro, node, u);
+    const LamTouch touch = LamMacroNearest(macro, node, u, NULL);
     const PetscReal force[2] = {PetscRealPart(r[node->local]), PetscRealPart(r[node->local + 1])};
     LamMacroShareTouched(macro, node, &touch, force, reaction);
   }

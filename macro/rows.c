@@ -15,11 +15,21 @@
   the first retreat of an obstacle. Derivatives: dg = n . dx; with dn = kappa t (t . dx), kappa = 1 / |x - centre|,
   and t normal to n, d(t . r) = t . dr - kappa lambda t . dx.
 
+  Friction: r = lambda n + tau t, and with the slip s along t since the last converged state Coulomb's law is
+  |tau| <= mu lambda, and where s is not 0, tau = -mu lambda s/|s|. A node sticks if |tau - s| < mu lambda (stresses in
+  C1 + C2, lengths in macro lengths): its equation along t is s = 0. Else it slips with the sign sigma of tau - s:
+  tau - sigma mu lambda = 0. Newton's method on this is again the one of active sets. With slid the motion of the node
+  against the obstacle, s = t . slid, and dt = -kappa n (t . dx),
+    ds = (1 - kappa n . slid) t . dx,  d(tau - sigma mu lambda) = (t - sigma mu n) . dr
+                                                                  - kappa (lambda + sigma mu tau) t . dx.
+  Of a node with a prescribed direction that and the gap say where it is: friction changes nothing.
+
   In a sealed body, which hardly changes its volume, this set may alternate for ever: a node that leaves moves its
   neighbours. There nodes enter at once, but stay, also where the obstacle would have to pull them, until the iteration
   has converged. Then the node that is pulled most leaves, and so on until none is pulled.
 
-  Reference: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888.
+  References: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888; Hueeber, Stadler & Wohlmuth, SIAM J. Sci.
+  Comput. 30 (2008) 572-596 (friction).
 */
 #include "macro_impl.h"
 
@@ -44,11 +54,21 @@ static void PrescribeRow(LamNodeRows *rows, PetscInt i, const PetscReal normal[2
   }
 }
 
+/* The tangent that row i is along. */
+static void TangentOf(PetscInt i, const PetscReal normal[2], PetscReal t[2])
+{
+  const PetscReal sign = i == 0 ? -1 : 1;
+
+  t[0] = -sign * normal[1];
+  t[1] = sign * normal[0];
+}
+
 /* Sets row i to t . r, with t the tangent of a normal, and includes the derivative of t. */
 static void TangentRow(LamNodeRows *rows, PetscInt i, const PetscReal normal[2], PetscReal turning)
 {
-  const PetscReal sign = i == 0 ? -1 : 1, t[2] = {-sign * normal[1], sign * normal[0]};
+  PetscReal t[2];
 
+  TangentOf(i, normal, t);
   for (PetscInt j = 0; j < 2; j++) {
     rows->combine[2 * i + j] = t[j];
     rows->add[2 * i + j] = -turning * t[j];
@@ -86,14 +106,47 @@ static PetscReal TouchForce(const LamTouch *touch, const PetscReal m[2], const P
                                      : (s[0] * PetscRealPart(r[0]) + s[1] * PetscRealPart(r[1])) / along;
 }
 
-/* Rows of a node in contact without prescribed direction, under the force lambda. */
-static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, PetscReal lambda)
+static PetscReal Along(const PetscReal a[2], const PetscReal b[2])
 {
+  return a[0] * b[0] + a[1] * b[1];
+}
+
+/* Sets row i of a node with friction that the obstacle presses with lambda; r: unbalanced force. At the start of an
+   increment nodes that have slipped, whose tau is the limit but for rounding, go on to do so. */
+static void FrictionRow(const LamTouch *touch, PetscInt i, PetscReal lambda, const PetscReal r[2], PetscBool fresh,
+                        LamNodeRows *rows)
+{
+  const PetscReal rounding = fresh ? 1e-6 : 0, limit = touch->friction * lambda, *n = touch->normal;
+  PetscReal t[2], slip, tau;
+
+  TangentOf(i, n, t);
+  slip = Along(t, touch->slid);
+  tau = Along(t, r);
+  if (PetscAbsReal(tau - slip) < limit * (1 - rounding)) { /* also where it is stuck: the limit is infinite */
+    const PetscReal turned = 1 - touch->curvature * Along(n, touch->slid), turning[2] = {turned * t[0], turned * t[1]};
+    PrescribeRow(rows, i, turning, slip);
+    return;
+  }
+  const PetscReal share = tau < slip ? -touch->friction : touch->friction;
+  for (PetscInt j = 0; j < 2; j++) {
+    rows->combine[2 * i + j] = t[j] - share * n[j];
+    rows->add[2 * i + j] = -touch->curvature * (lambda + share * tau) * t[j];
+  }
+}
+
+/* Rows of a node in contact without prescribed direction, under the force lambda; r: unbalanced forces. */
+static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, PetscReal lambda, const PetscScalar r[],
+                             PetscBool fresh)
+{
+  const PetscReal force[2] = {PetscRealPart(r[local]), PetscRealPart(r[local + 1])};
   const PetscInt i = Largest(touch->normal);
   LamNodeRows rows = {.local = local};
 
   PrescribeRow(&rows, i, touch->normal, touch->gap);
-  TangentRow(&rows, 1 - i, touch->normal, touch->curvature * lambda);
+  if (touch->friction > 0 && lambda > 0)
+    FrictionRow(touch, 1 - i, lambda, force, fresh, &rows);
+  else
+    TangentRow(&rows, 1 - i, touch->normal, touch->curvature * lambda);
   return rows;
 }
 
@@ -141,22 +194,25 @@ static PetscErrorCode FindPulled(LamMacro macro, PetscReal most_pulled)
 static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], const PetscScalar r[])
 {
   PetscReal most_pulled = 0;
+  const PetscScalar *before;
 
   PetscFunctionBeginUser;
   macro->violation = 0;
   macro->pulled = -1;
+  PetscCall(VecGetArrayRead(macro->u, &before));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     LamObstacleNode *node = &macro->obstacle_nodes[k];
     const LamConstraint *held = node->constraint < 0 ? NULL : &macro->constraints[node->constraint];
-    const LamTouch touch = LamMacroNearest(macro, node, u);
+    const LamTouch touch = LamMacroNearest(macro, node, u, before);
     const PetscReal lambda = TouchForce(&touch, held ? held->normal : NULL, &r[node->local]);
     const PetscBool active = IsInContact(macro, k, lambda - touch.gap, &most_pulled);
 
-    if (active && !held) macro->rows[macro->row_count++] = TouchRows(&touch, node->local, lambda);
+    if (active && !held) macro->rows[macro->row_count++] = TouchRows(&touch, node->local, lambda, r, macro->fresh);
     if (active && held) PrescribeRow(&macro->rows[held->row], 1 - Largest(held->normal), touch.normal, touch.gap);
     node->active = active;
     macro->violation = PetscMax(macro->violation, active ? PetscAbsReal(touch.gap) : -touch.gap);
   }
+  PetscCall(VecRestoreArrayRead(macro->u, &before));
   macro->fresh = PETSC_FALSE;
   macro->released = -1;
   if (!macro->obstacle_count) PetscFunctionReturn(0);

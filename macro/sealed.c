@@ -13,6 +13,8 @@
     R_a    = int psi_a [ dPsi/dp + v (1 - q / K_w) ]     f_ai    = int P_ij dN_a/dX_j
     K_ab   = int psi_a psi_b [ d2Psi/dp2 - v / K_w ]     C_a,bi  = int psi_a dP_ij/dp dN_b/dX_j
 
+  and in an axisymmetric body the terms of F33 in f and C (assembly.c).
+
   Lumens that exchange water with their surroundings (body.h) have volume w(p0 + q) instead of v (1 - q / K_w); the
   slope w' then replaces -v / K_w.
 
@@ -34,7 +36,7 @@ PetscBool LamMacroHasPressures(LamMacro macro)
   return macro->scene->sealed || macro->water_law ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* psi of an element's points; h is the root of its area. */
+/* psi of an element's points; h is the root of its area (of the volume of an axisymmetric one: psi may be scaled). */
 static void FillShape(LamMacro macro, const LamMacroElement *element)
 {
   const PetscInt dim = macro->dim;
@@ -138,8 +140,8 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
 {
   const LamMacroSeal *seal = macro->seal;
   const PetscInt dim = macro->dim, modes = seal->modes, point = element->first + q;
-  const PetscReal *dN = LamMacroGradient(macro, element, q), *shape = &seal->shape[modes * point],
-                  w = macro->weight[point];
+  const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q),
+                  *shape = &seal->shape[modes * point], w = macro->weight[point];
   const LamSealedPoint *response = &seal->now[point];
   LamWater water;
 
@@ -149,6 +151,7 @@ static void AddPoint(LamMacro macro, const LamMacroElement *element, PetscInt q,
     for (PetscInt i = 0; i < dim; i++) {
       PetscReal force = 0; /* from the pressure */
       for (PetscInt j = 0; j < dim; j++) force += w * response->P_turgor[dim * i + j] * dN[dim * b + j];
+      if (hoop && i == 0) force += w * response->P_turgor[macro->strains - 1] * hoop[b];
       for (PetscInt a = 0; a < modes; a++) C[(dim * b + i) * modes + a] += shape[a] * force;
     }
   }
@@ -258,14 +261,13 @@ PetscErrorCode LamMacroFollow(LamMacro macro, Vec u)
 PetscErrorCode LamMacroKeepSealed(LamMacro macro, PetscInt point)
 {
   LamResponse *response = &macro->responses[point];
-  const PetscInt dim = macro->dim;
   PetscReal sum = response->energy_turgor2;
 
   PetscFunctionBeginUser;
   if (!macro->seal || !LamResponseHasFields(response)) PetscFunctionReturn(0);
   LamSealedPoint *sealed = &macro->seal->now[point];
-  for (PetscInt ij = 0; ij < dim * dim; ij++) {
-    sealed->P_turgor[ij] = response->P_turgor[3 * (ij / dim) + ij % dim];
+  for (PetscInt ij = 0; ij < macro->strains; ij++) {
+    sealed->P_turgor[ij] = response->P_turgor[LamMacroEntry(macro, ij)];
     sum += sealed->P_turgor[ij];
   }
   sealed->lumen = -response->energy_turgor;

@@ -3,7 +3,7 @@
 
   Method. To first order in a change of stress dP at u, displacements change by du and the reaction R by
 
-    dR = sum over the points of G : dP,  G = w dv/dX
+    dR = sum over the points of G : dP,  G = w dv/dX, and w v1/R for F33 of an axisymmetric body
 
   where v is the displacement by which the virtual work of the unbalanced force is that reaction: the pull of the
   reaction at nodes that are prescribed or touch an obstacle, and K^T v = 0 elsewhere, with the run's own tangent K
@@ -32,7 +32,7 @@ static PetscErrorCode Transposed(LamMacro macro, Mat *constrained, Mat *free)
   macro->fresh = PETSC_FALSE;
   PetscCall(LamMacroConstrainResidual(macro, macro->u, macro->residual));
   PetscCall(LamMacroAssembleTangent(macro, macro->tangent));
-  PetscCall(LamMacroAddTractionTangent(macro, macro->tangent));
+  PetscCall(LamMacroAddTractionTangent(macro, macro->u, macro->tangent));
   PetscCall(MatTranspose(macro->tangent, MAT_INITIAL_MATRIX, constrained));
   if (free) PetscCall(MatDuplicate(*constrained, MAT_COPY_VALUES, free));
   PetscCall(LamMacroConstrainTangent(macro, *constrained));
@@ -175,7 +175,7 @@ static void FillPull(LamMacro macro, const PetscScalar u[], PetscInt side, Petsc
     }
     for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
       const LamObstacleNode *node = &macro->obstacle_nodes[k];
-      const LamTouch touch = LamMacroNearest(macro, node, u);
+      const LamTouch touch = LamMacroNearest(macro, node, u, NULL);
       PetscReal reaction[LAM_MAX_BOUNDARIES][2] = {{0}};
       if (!node->active) continue;
       LamMacroShareTouched(macro, node, &touch, unit[j], reaction);
@@ -205,7 +205,7 @@ static void TurnRows(LamMacro macro, const PetscScalar u[], PetscInt side, Petsc
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
     if (!node->active || node->constraint >= 0) continue;
-    const PetscBool own = (PetscBool)(macro->obstacles[LamMacroNearest(macro, node, u).obstacle].side == side);
+    const PetscBool own = (PetscBool)(macro->obstacles[LamMacroNearest(macro, node, u, NULL).obstacle].side == side);
     for (PetscInt i = 0; i < 2 && own; i++)
       if (!Prescribes(rows, i)) load[rows->local + i] = rows->add[2 * i + component];
     rows++;
@@ -229,14 +229,14 @@ static PetscErrorCode FillLoad(LamMacro macro, PetscInt side, PetscInt component
   PetscFunctionReturn(0);
 }
 
-/* G = w dv/dX, [points][dim][dim]. */
+/* G = w dv/dX, and w v1/X1 for F33; [points][strains]. */
 static PetscErrorCode Gradients(LamMacro macro, Vec v, PetscReal G[])
 {
-  const PetscInt dim = macro->dim;
+  const PetscInt dim = macro->dim, n = macro->strains;
   Vec local;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(G, macro->point_count * dim * dim));
+  PetscCall(PetscArrayzero(G, macro->point_count * n));
   PetscCall(DMGetLocalVector(macro->dm, &local));
   PetscCall(DMGlobalToLocal(macro->dm, v, INSERT_VALUES, local));
   for (PetscInt e = 0; e < macro->element_count; e++) {
@@ -244,12 +244,13 @@ static PetscErrorCode Gradients(LamMacro macro, Vec v, PetscReal G[])
     PetscScalar *ve = NULL;
     PetscCall(DMPlexVecGetClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ve));
     for (PetscInt q = 0; q < element->kind->points; q++) {
-      const PetscReal *dN = LamMacroGradient(macro, element, q);
+      const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q);
       const PetscInt point = element->first + q;
-      for (PetscInt a = 0; a < element->kind->nodes; a++)
+      for (PetscInt a = 0; a < element->kind->nodes; a++) {
         for (PetscInt ij = 0; ij < dim * dim; ij++)
-          G[point * dim * dim + ij] +=
-              macro->weight[point] * PetscRealPart(ve[dim * a + ij / dim]) * dN[dim * a + ij % dim];
+          G[point * n + ij] += macro->weight[point] * PetscRealPart(ve[dim * a + ij / dim]) * dN[dim * a + ij % dim];
+        if (hoop) G[point * n + n - 1] += macro->weight[point] * PetscRealPart(ve[dim * a]) * hoop[a];
+      }
     }
     PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, local, macro->mesh_start + e, NULL, &ve));
   }
@@ -271,7 +272,7 @@ static PetscErrorCode SolveWith(KSP ksp, Vec load, Vec v, PetscBool *ok)
 /* One component; *any: its reaction depends on the stress. */
 static PetscErrorCode Component(LamMacro macro, KSP ksp, Mat free, LamSensitivity *s, PetscBool *any, PetscBool *ok)
 {
-  const PetscInt values = macro->point_count * macro->dim * macro->dim, k = s->count;
+  const PetscInt values = macro->point_count * macro->strains, k = s->count;
   PetscReal norm;
   Vec load, v;
 
@@ -296,7 +297,7 @@ static PetscErrorCode Component(LamMacro macro, KSP ksp, Mat free, LamSensitivit
 
 PetscErrorCode LamMacroSensitivityCreate(LamMacro macro, LamSensitivity *s, PetscBool *ok)
 {
-  const PetscInt most = 2 * macro->step.boundary_count, values = macro->point_count * macro->dim * macro->dim;
+  const PetscInt most = 2 * macro->step.boundary_count, values = macro->point_count * macro->strains;
   const PetscBool inflated = (PetscBool)(macro->loaded && macro->inflated.points);
   Mat K, free = NULL;
   KSP ksp;

@@ -71,7 +71,7 @@ static PetscErrorCode FormTangent(SNES snes, Vec u, Mat J, Mat preconditioner, v
   PetscFunctionBeginUser;
   /* SNES has just evaluated the residual at u: the stored responses belong to it */
   PetscCall(LamMacroAssembleTangent(macro, preconditioner));
-  PetscCall(LamMacroAddTractionTangent(macro, preconditioner));
+  PetscCall(LamMacroAddTractionTangent(macro, u, preconditioner));
   PetscCall(LamMacroBorderDerivatives(macro, preconditioner));
   PetscCall(LamMacroConstrainTangent(macro, preconditioner));
   if (LamMacroFlows(macro)) PetscCall(LamMacroConstrainColumns(macro, macro->flow->to_force));
@@ -171,6 +171,7 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
     macro->obstacle_nodes[k].accepted = macro->obstacle_nodes[k].active;
+  LamMacroObstaclesAccept(macro);
   PetscCall(LamResponderAccept(macro->responder));
   PetscFunctionReturn(0);
 }

@@ -7,7 +7,8 @@
 
     f_a = integral of N_a (t_t 1 + t_n R) dx/dxi dxi = sum_b [integral of N_a dN_b/dxi dxi] (t_t 1 + t_n R) x_b
 
-  is linear in the positions. A pressure p is t_n = -p.
+  is linear in the positions. A pressure p is t_n = -p. On an axisymmetric body the integrands have the factor 2 pi R,
+  of followers 2 pi r, whose derivative by the positions adds to theirs.
 */
 #include "macro_impl.h"
 
@@ -38,6 +39,12 @@ static void FollowerMatrix(const LamBoundary *boundary, PetscReal factor, PetscR
   T[2] = -T[1];
 }
 
+/* 2 pi times the radius of a point of a facet at positions x [3][2], of an axisymmetric body; else 1. */
+static PetscReal Around(LamMacro macro, const PetscReal N[3], const PetscReal x[6])
+{
+  return macro->axisymmetric ? 2 * PETSC_PI * (N[0] * x[0] + N[1] * x[2] + N[2] * x[4]) : 1;
+}
+
 /* Adds the nodal forces fe [3][2] of one entry's traction on a facet, at displacements ue [3][2]. */
 static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, const LamBoundary *boundary,
                                     PetscReal factor, const PetscScalar ue[6], PetscScalar fe[6])
@@ -47,13 +54,12 @@ static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, 
   PetscFunctionBeginUser;
   PetscCall(LamMacroFacetNodes(macro, facet, X, &sense));
   FollowerMatrix(boundary, factor, T);
+  for (PetscInt a = 0; a < 6 && boundary->follower; a++) X[a] += PetscRealPart(ue[a]);
   for (PetscInt q = 0; q < LAM_FACET_POINTS; q++) {
     PetscReal N[3], dN[3], weight, tau[2] = {0, 0}, t[2];
     LamMacroFacetShape(q, N, dN, &weight);
-    for (PetscInt a = 0; a < 3; a++) {
-      for (PetscInt i = 0; i < 2; i++)
-        tau[i] += dN[a] * (X[2 * a + i] + (boundary->follower ? PetscRealPart(ue[2 * a + i]) : 0));
-    }
+    weight *= Around(macro, N, X);
+    for (PetscInt a = 0; a < 6; a++) tau[a % 2] += dN[a / 2] * X[a];
     for (PetscInt i = 0; i < 2; i++)
       t[i] = boundary->follower ? sense * (T[2 * i] * tau[0] + T[2 * i + 1] * tau[1])
                                 : factor * boundary->traction[i] * PetscSqrtReal(PetscSqr(tau[0]) + PetscSqr(tau[1]));
@@ -106,9 +112,9 @@ PetscErrorCode LamMacroExternalForce(LamMacro macro, Vec u, Vec external)
   PetscFunctionReturn(0);
 }
 
-/* Adds minus the tangent of a follower on one facet. */
+/* Adds minus the tangent of a follower on one facet, at displacements ue [3][2]. */
 static PetscErrorCode AddFacetTangent(LamMacro macro, const LamMacroFacet *facet, const LamBoundary *boundary,
-                                      PetscReal factor, Mat tangent)
+                                      PetscReal factor, const PetscScalar ue[6], Mat tangent)
 {
   PetscReal X[6], sense, T[4];
   PetscScalar Ke[36] = {0};
@@ -116,24 +122,32 @@ static PetscErrorCode AddFacetTangent(LamMacro macro, const LamMacroFacet *facet
   PetscFunctionBeginUser;
   PetscCall(LamMacroFacetNodes(macro, facet, X, &sense));
   FollowerMatrix(boundary, factor, T);
+  for (PetscInt a = 0; a < 6; a++) X[a] += PetscRealPart(ue[a]);
   for (PetscInt q = 0; q < LAM_FACET_POINTS; q++) {
-    PetscReal N[3], dN[3], weight;
+    PetscReal N[3], dN[3], weight, tau[2] = {0, 0};
     LamMacroFacetShape(q, N, dN, &weight);
+    for (PetscInt a = 0; a < 6; a++) tau[a % 2] += dN[a / 2] * X[a];
     for (PetscInt row = 0; row < 6; row++) {
+      const PetscReal *t = &T[2 * (row % 2)], share = sense * weight * N[row / 2], around = Around(macro, N, X);
       for (PetscInt column = 0; column < 6; column++)
-        Ke[6 * row + column] -= sense * weight * N[row / 2] * dN[column / 2] * T[2 * (row % 2) + column % 2];
+        Ke[6 * row + column] -= share * around * dN[column / 2] * t[column % 2];
+      for (PetscInt b = 0; b < 3 && macro->axisymmetric; b++) /* by the radius */
+        Ke[6 * row + 2 * b] -= share * 2 * PETSC_PI * N[b] * (t[0] * tau[0] + t[1] * tau[1]);
     }
   }
   PetscCall(DMPlexMatSetClosure(macro->dm, NULL, NULL, tangent, facet->point, Ke, ADD_VALUES));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent)
+PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Vec u, Mat tangent)
 {
   const LamMacroSpec *spec = &macro->scene->macro;
   PetscBool any = PETSC_FALSE;
+  Vec displacement;
 
   PetscFunctionBeginUser;
+  PetscCall(DMGetLocalVector(macro->dm, &displacement));
+  PetscCall(DMGlobalToLocal(macro->dm, u, INSERT_VALUES, displacement));
   for (PetscInt b = 0; b < spec->boundary_count; b++) {
     const LamBoundary *boundary = &spec->boundary[b];
     const PetscInt set = LamMacroFindSet(macro, boundary->on);
@@ -141,10 +155,15 @@ PetscErrorCode LamMacroAddTractionTangent(LamMacro macro, Mat tangent)
     if (!boundary->follower || !IsTraction(boundary)) continue;
     any = PETSC_TRUE;
     for (PetscInt f = 0; f < macro->facet_count; f++) {
-      if (macro->facets[f].sets >> set & 1)
-        PetscCall(AddFacetTangent(macro, &macro->facets[f], boundary, factor, tangent));
+      const LamMacroFacet *facet = &macro->facets[f];
+      PetscScalar *ue = NULL;
+      if (!(facet->sets >> set & 1)) continue;
+      PetscCall(DMPlexVecGetClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
+      PetscCall(AddFacetTangent(macro, facet, boundary, factor, ue, tangent));
+      PetscCall(DMPlexVecRestoreClosure(macro->dm, NULL, displacement, facet->point, NULL, &ue));
     }
   }
+  PetscCall(DMRestoreLocalVector(macro->dm, &displacement));
   if (!any) PetscFunctionReturn(0);
   PetscCall(MatAssemblyBegin(tangent, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(tangent, MAT_FINAL_ASSEMBLY));

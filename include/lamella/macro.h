@@ -1,5 +1,6 @@
 /*
-  The macroscale solver: total Lagrangian finite elements in plane strain. The material is a responder.
+  The macroscale solver: total Lagrangian finite elements in plane strain, or of an axisymmetric body (LamMacroSpec).
+  The material is a responder.
 
     LamMacroCreate(comm, &macro); LamMacroSetScene(macro, scene); LamMacroSetUp(macro);
     LamMacroGetPointCount(macro, &points);             to create the responder
@@ -45,28 +46,33 @@ typedef struct {
   PetscBool complete;    /* PETSC_FALSE: ended at an increment before the end of the step */
   PetscInt boundary_count;
   char boundary[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH]; /* each named side once */
-  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, stress * macro length, per thickness; a corner's
-                                                    force is shared by the sides that prescribe it */
+  /* force on the body, stress * macro length, per thickness; a corner's force is shared by the sides that prescribe
+     it. Of an axisymmetric body stress * macro length^2, around the whole circle: along X2 the force, along X1 the
+     integral of the radial traction, whose resultant is 0 */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2];
   LamMacroCertificate certificate;               /* of these reactions */
   LamMacroCertificate peak;                      /* of an earlier step, whose force was larger; in the last report */
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* prescribed, relative to the start of the conditions; NaN: free */
   PetscInt obstacle_count;
-  PetscReal obstacle[LAM_MAX_BOUNDARIES][5]; /* plates and indenters, macro lengths: a point of the plate, its normal
-                                                into the body, 0; the indenter's centre, direction and radius */
-  PetscReal work;                            /* of the boundary forces since the start, stress * length^2 */
-  PetscReal debonded_fraction, max_gap;      /* not finite if unknown to the responder */
+  PetscReal obstacle[LAM_MAX_BOUNDARIES][6]; /* plates and indenters, macro lengths: a point of the plate, its normal
+                                                into the body, 0, 0; the indenter's centre, that is of the sphere that
+                                                rounds its edge where it were on the axis, direction, radius, and the
+                                                radius of its edge, of a round one that of all of it */
+  PetscReal work; /* of the boundary forces since the start, stress * length^2; axisymmetric: stress * length^3 */
+  PetscReal debonded_fraction, max_gap; /* not finite if unknown to the responder */
   PetscReal turgor_mean;
   PetscReal ellipticity;            /* minimum over the material points (ellipticity.h); NaN: unknown */
   PetscReal localisation_normal[2]; /* reference normal of the critical band there, */
   PetscReal localisation_place[2];  /* and the reference position of the point, macro lengths */
   PetscInt localised_points;        /* number of points that have lost ellipticity */
   /* of the points with law `lamella`; without any NaN and PETSC_FALSE */
-  PetscReal stored, dissipated, released; /* sums over the points since the undeformed tissue, stress * length^2: */
-  PetscReal tissue_work;                  /* work of stress, turgor and suction, stored + dissipated + released */
-  PetscReal broken_fraction;              /* mean of the share of the lamella's fracture energy that is spent */
-  PetscBool mesh_dependent;               /* ellipticity has been lost in this or an earlier step: damage stays where
-                                             that has put it, as narrow as elements, and so depends on the mesh */
-  PetscInt newton_iterations;             /* total of the step, cutbacks included */
+  PetscReal stored, dissipated,
+      released;               /* sums over the points since the undeformed tissue, stress * length^2 or ^3: */
+  PetscReal tissue_work;      /* work of stress, turgor and suction, stored + dissipated + released */
+  PetscReal broken_fraction;  /* mean of the share of the lamella's fracture energy that is spent */
+  PetscBool mesh_dependent;   /* ellipticity has been lost in this or an earlier step: damage stays where
+                                 that has put it, as narrow as elements, and so depends on the mesh */
+  PetscInt newton_iterations; /* total of the step, cutbacks included */
   PetscInt cutbacks;
   PetscInt64 queries, hits, solves, failures; /* of this step, all ranks */
   PetscInt64 interpolated;                    /* responses from a database, likewise; some needed solves of nodes */
@@ -105,8 +111,8 @@ LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal
 LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder responder); /* borrows it */
 /*
   Reactions are corrected, to first order, by the stress P of a second responder at the converged F of material points
-  (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips and
-  sealed cells: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
+  (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips,
+  sealed cells and friction: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
 
   LAM_CERTIFY_ALL: the reference is asked for all points of this rank at once, in the inflated body and in each step,
   and accepts. LAM_CERTIFY_SHARE: for one point at a time, at different times on the ranks; `reject` makes it start from
@@ -184,7 +190,7 @@ typedef struct {
   PetscInt potentials;                             /* 0 without transport */
 } LamMacroSizes;
 LAM_EXPORT PetscErrorCode LamMacroGetSizes(LamMacro macro, LamMacroSizes *sizes);
-/* Reference volume of each point, [point]. */
+/* Reference volume of each point, [point]; of an axisymmetric body that of the whole circle. */
 LAM_EXPORT PetscErrorCode LamMacroGetVolumes(LamMacro macro, PetscReal volume[]);
 /* Element of a point: its number on this rank and in the undistributed mesh; index: of the point in the element. */
 LAM_EXPORT PetscErrorCode LamMacroGetElement(LamMacro macro, PetscInt point, PetscInt *local, PetscInt *number,

@@ -267,10 +267,19 @@ typedef struct {
 #define LAM_DISC_PARTS(X)                                                                                              \
   X(LAM_DISC_WHOLE, "whole")                                                                                           \
   X(LAM_DISC_HALF, "half")       /* X2 >= 0 */                                                                         \
+  X(LAM_DISC_RIGHT, "right")     /* X1 >= 0 */                                                                         \
   X(LAM_DISC_QUARTER, "quarter") /* X1, X2 >= 0 */
 typedef enum { LAM_DISC_PARTS(LAM_ENUM_ENTRY) LAM_DISC_PART_COUNT } LamDiscPart;
 LAM_EXPORT extern const char *const LamDiscPartNames[];
 typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
+
+/* What the mesh is a section of. */
+#define LAM_MACRO_SYMMETRIES(X)                                                                                        \
+  X(LAM_PLANE_STRAIN, "plane_strain")                                                                                  \
+  X(LAM_AXISYMMETRIC, "axisymmetric") /* X1 is the radius, X2 the axis; forces and energies are those of the whole     \
+                                         circle */
+typedef enum { LAM_MACRO_SYMMETRIES(LAM_ENUM_ENTRY) LAM_MACRO_SYMMETRY_COUNT } LamMacroSymmetry;
+LAM_EXPORT extern const char *const LamMacroSymmetryNames[];
 
 #define LAM_MAX_BOUNDARIES 16
 #define LAM_MAX_ZOOMS 3
@@ -282,7 +291,7 @@ typedef enum { LAM_MESH_BOX, LAM_MESH_DISC, LAM_MESH_GMSH } LamMeshSource;
   X(LAM_BOUNDARY_SYMMETRY, "symmetry") /* straight side; no normal displacement, during inflation either */            \
   X(LAM_BOUNDARY_TRACTION, "traction") /* dead load, or `follower` */                                                  \
   X(LAM_BOUNDARY_PRESSURE, "pressure") /* a follower traction (0, -pressure) */                                        \
-  X(LAM_BOUNDARY_PLATE, "plate")       /* rigid obstacles, frictionless and unilateral */                              \
+  X(LAM_BOUNDARY_PLATE, "plate")       /* rigid, unilateral obstacles */                                               \
   X(LAM_BOUNDARY_INDENTER, "indenter")                                                                                 \
   X(LAM_BOUNDARY_GRIP, "grip") /* all nodes move alike; the total force is 0 in components that are not given */
 typedef enum { LAM_BOUNDARY_KINDS(LAM_ENUM_ENTRY) LAM_BOUNDARY_KIND_COUNT } LamBoundaryKind;
@@ -309,6 +318,9 @@ typedef struct {
   PetscBool follower;
   PetscReal normal[2]; /* unit vector from a plate into the body; 0: the normal of the straight side */
   PetscReal radius;    /* of an indenter */
+  PetscBool shaft;     /* the indenter is the flat end of a cylinder, with its shaft; else it is round */
+  PetscReal edge;      /* radius of the rounding between its end and its shaft */
+  PetscReal friction;  /* of a plate or an indenter: coefficient; infinite: stuck */
   PetscReal at[2];     /* reference point towards which the indenter's centre moves */
   LamHistory history;
 } LamBoundary;
@@ -330,11 +342,13 @@ typedef struct {
 } LamLoadControl;
 
 typedef struct {
+  LamMacroSymmetry symmetry;
   LamMeshSource source;
   LamScenePlace mesh_place; /* of the key that says it */
   PetscReal box[2];         /* edges, in macro lengths (box[0] = 1) */
   LamDiscPart disc;         /* part of a disc about the origin; its radius is the macro length */
   PetscInt elements[2];     /* box: along X1, X2; disc: along an eighth of the rim, and between rim and inner square */
+  PetscReal grading[2];     /* box: edge of the last element over that of the first, along X1, X2; 0: alike */
   char gmsh[PETSC_MAX_PATH_LEN]; /* file; its unit of length is the macro length */
   PetscInt boundary_count;
   LamBoundary boundary[LAM_MAX_BOUNDARIES];

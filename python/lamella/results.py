@@ -12,7 +12,8 @@ from ._library import MEMBERS
 GROUPS = ("macro/curve", "macro", "process", "map")  # whose datasets are attributes of a result
 LISTS = ("boundaries", "modes", "criteria", "events")  # texts with a name per line
 NAMES = {"mode": "modes", "criterion": "criteria", "event": "events"}  # numbers of these
-UNITS = {"1": 1.0, "s": 1.0, "K": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "N/mm": 1e3, "N mm/mm": 1.0, "kJ/m^3": 1e3}
+UNITS = {"1": 1.0, "s": 1.0, "K": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "N/mm": 1e3, "N mm/mm": 1.0,
+         "N": 1.0, "N mm": 1e-3, "kJ/m^3": 1e3}
 
 
 class Result:

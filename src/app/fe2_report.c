@@ -7,11 +7,12 @@
 #include "clock.h"
 #include <lamella/ellipticity.h>
 #include <math.h>
+#include <string.h>
 
-/* Factors from nondimensional to N per mm of thickness, and MPa. */
+/* Factors from nondimensional to the unit of forces, and MPa. */
 static PetscReal ForceUnit(const LamFE2Run *run)
 {
-  return run->scene->scales.stress * run->scene->scales.macro_length * 1e-3;
+  return run->summary.curve.units.force;
 }
 
 static PetscReal MPa(const LamFE2Run *run)
@@ -43,15 +44,14 @@ static void SetCertificate(const LamFE2Run *run, const LamMacroStep *step, const
 
 static json_t *NumbersToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory)
 {
-  const LamScales *scales = &run->scene->scales;
-  const PetscReal mm = scales->macro_length * 1e3;
+  const PetscReal mm = run->scene->scales.macro_length * 1e3;
   json_t *reaction = SidesToJSON(run, step, step->reaction);
 
   return json_pack(
       "{s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, "
       "s:I, s:o, s:o}",
       "step", (json_int_t)step->step, "load_factor", LamJSONReal(step->load_factor), "reaction", reaction, "work",
-      LamJSONReal(step->work * scales->stress * PetscSqr(scales->macro_length)), "debonded_fraction",
+      LamJSONReal(step->work * run->summary.curve.units.energy), "debonded_fraction",
       LamJSONReal(step->debonded_fraction), "max_gap", LamJSONReal(step->max_gap), "turgor_mean",
       LamJSONReal(step->turgor_mean * MPa(run)), "newton_iterations", (json_int_t)step->newton_iterations, "cutbacks",
       (json_int_t)step->cutbacks, "queries", (json_int_t)step->queries, "hits", (json_int_t)step->hits, "solves",
@@ -70,7 +70,7 @@ static json_t *NumbersToJSON(const LamFE2Run *run, const LamMacroStep *step, Pet
 /* Of a lamella that breaks. */
 static void SetLamella(const LamFE2Run *run, const LamMacroStep *step, json_t *object)
 {
-  const PetscReal energy = run->scene->scales.stress * PetscSqr(run->scene->scales.macro_length);
+  const PetscReal energy = run->summary.curve.units.energy;
 
   if (isnan(step->broken_fraction)) return;
   json_object_set_new(object, "broken_fraction", LamJSONReal(step->broken_fraction));
@@ -135,9 +135,9 @@ void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool 
 static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
 {
   PrintTissues(&run->tissues);
-  printf("Reactions in N per mm of thickness; solving: seconds of it in RVE solves; residuals relative to the forces "
-         "of the elements.\n%4s %7s",
-         "step", "load");
+  printf("Reactions in %s; solving: seconds of it in RVE solves; residuals relative to the forces of the elements.\n"
+         "%4s %7s",
+         run->scene->macro.symmetry == LAM_AXISYMMETRIC ? "N" : "N per mm of thickness", "step", "load");
   LamFE2PrintSides(run, step, PETSC_TRUE);
   printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }
@@ -216,6 +216,14 @@ static double Number(const json_t *object, const char key[])
   return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
+/* What the summary says, or of an older file the unit of those. */
+static const char *Unit(const json_t *summary, const char key[], const char older[])
+{
+  const char *unit = json_string_value(json_object_get(summary, key));
+
+  return unit ? unit : older;
+}
+
 /* " 0.0812", or "unknown". */
 static void PrintNumber(const char words[], double value)
 {
@@ -225,28 +233,32 @@ static void PrintNumber(const char words[], double value)
     printf("%s unknown", words);
 }
 
-static void PrintOnset(const json_t *onset)
+static void PrintOnset(const json_t *onset, const char force[])
 {
   const json_t *place = json_object_get(onset, "place");
 
   printf("%s %s load factor %.4g", json_string_value(json_object_get(onset, "criterion")),
          json_is_true(json_object_get(onset, "interpolated")) ? "at" : "found at", Number(onset, "load_factor"));
   if (isfinite(Number(onset, "displacement")))
-    printf(", u %.4g mm, R %.4g N/mm", Number(onset, "displacement"), Number(onset, "reaction"));
+    printf(", u %.4g mm, R %.4g %s", Number(onset, "displacement"), Number(onset, "reaction"), force);
   printf("; element %lld, point %lld at (%.4g, %.4g) mm\n",
          (long long)json_integer_value(json_object_get(onset, "element")),
          (long long)json_integer_value(json_object_get(onset, "point")), json_number_value(json_array_get(place, 0)),
          json_number_value(json_array_get(place, 1)));
 }
 
-static void PrintSlopes(const char name[], const json_t *slopes)
+static void PrintSlopes(const char name[], const json_t *slopes, const char unit[])
 {
+  const double area = Number(slopes, "area");
+
   printf("  %-18s", name);
   PrintNumber(" initial", Number(slopes, "initial"));
   PrintNumber(", final", Number(slopes, "final"));
   PrintNumber(", secant", Number(slopes, "secant"));
-  printf(" MPa");
-  if (isfinite(Number(slopes, "height")))
+  printf(" %s", unit);
+  if (isfinite(area))
+    printf(" (height %.4g mm over area %.4g mm^2)", Number(slopes, "height"), area);
+  else if (isfinite(Number(slopes, "height")))
     printf(" (height %.4g mm over length %.4g mm)", Number(slopes, "height"), Number(slopes, "length"));
   putchar('\n');
 }
@@ -260,7 +272,7 @@ static void PrintMode(const json_t *summary, const char mode[], const char unjud
   if (!onset)
     printf("not judged: %s\n", unjudged);
   else if (json_is_object(onset))
-    PrintOnset(onset);
+    PrintOnset(onset, Unit(summary, "force_unit", "N/mm"));
   else
     printf("not reached\n");
 }
@@ -271,9 +283,9 @@ static void PrintLamella(const json_t *summary)
   const json_t *from = json_object_get(summary, "mesh_dependent");
 
   if (!json_object_get(summary, "broken_fraction")) return;
-  printf("  %-18s %.4g of its fracture energy; stored %.4g, dissipated %.4g, released in jumps %.4g N mm/mm\n",
-         "lamella", Number(summary, "broken_fraction"), Number(summary, "stored"), Number(summary, "dissipated"),
-         Number(summary, "released"));
+  printf("  %-18s %.4g of its fracture energy; stored %.4g, dissipated %.4g, released in jumps %.4g %s\n", "lamella",
+         Number(summary, "broken_fraction"), Number(summary, "stored"), Number(summary, "dissipated"),
+         Number(summary, "released"), Unit(summary, "energy_unit", "N mm/mm"));
   if (json_is_object(from))
     printf(
         "  %-18s from step %lld (load factor %.4g) on, where the tissue has lost ellipticity: what follows is not of "
@@ -283,6 +295,7 @@ static void PrintLamella(const json_t *summary)
 
 void LamSummaryPrint(const json_t *summary)
 {
+  const char *force = Unit(summary, "force_unit", "N/mm");
   const json_t *loaded = json_object_get(summary, "loaded");
   const json_t *modulus = json_object_get(summary, "modulus"), *firmness = json_object_get(summary, "firmness");
   const json_t *direction = json_object_get(loaded, "direction");
@@ -295,12 +308,12 @@ void LamSummaryPrint(const json_t *summary)
   if (json_object_get(summary, "opening")) PrintMode(summary, "opening", ""); /* contact tissue only */
   PrintMode(summary, "separation", "the scene has no strength.lamella_normal or lamella_shear");
   PrintMode(summary, "rupture", "the scene has no strength.wall");
-  if (loaded) PrintSlopes("stiffness", json_object_get(summary, "stiffness"));
-  if (modulus) PrintSlopes("modulus", modulus);
+  if (loaded) PrintSlopes("stiffness", json_object_get(summary, "stiffness"), strcmp(force, "N") ? "MPa" : "N/mm");
+  if (modulus) PrintSlopes("modulus", modulus, "MPa");
   if (firmness)
-    printf("  %-18s %.4g N/mm at u %.4g mm, load factor %.4g\n", "largest force", Number(firmness, "reaction"),
+    printf("  %-18s %.4g %s at u %.4g mm, load factor %.4g\n", "largest force", Number(firmness, "reaction"), force,
            Number(firmness, "displacement"), Number(firmness, "load_factor"));
-  printf("  %-18s %.4g N mm/mm\n", "work", Number(summary, "work"));
+  printf("  %-18s %.4g %s\n", "work", Number(summary, "work"), Unit(summary, "energy_unit", "N mm/mm"));
   PrintLamella(summary);
 }
 

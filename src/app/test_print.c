@@ -11,16 +11,17 @@ json_t *LamFromInflatedToJSON(const PetscReal F[9], const PetscReal P[9], const 
   return json_pack("{s:o, s:o}", "F", LamJSONReals(9, F, 1), "P", LamJSONReals(9, P, scales->stress * 1e-6));
 }
 
-/* Units of stress, strain and energy, and of energy the factor. */
+/* Units of stress, modulus, strain and energy, and of energy the factor. */
 typedef struct {
-  const char *stress, *strain, *energy;
+  const char *stress, *modulus, *strain, *energy;
   PetscReal factor;
 } Units;
 
 static Units UnitsOf(const LamTest *test)
 {
-  return test->is_force ? (Units){"N/mm", " mm", "N mm/mm", test->unit}
-                        : (Units){"MPa", "", "kJ/m^3", test->unit * 1e3};
+  if (!test->is_force) return (Units){"MPa", "MPa", "", "kJ/m^3", test->unit * 1e3};
+  if (test->scene->macro.symmetry == LAM_AXISYMMETRIC) return (Units){"N", "N/mm", " mm", "N mm", test->unit};
+  return (Units){"N/mm", "MPa", " mm", "N mm/mm", test->unit};
 }
 
 static void PrintCurve(const LamTest *test)
@@ -53,7 +54,7 @@ static void PrintTable(const LamTest *test)
 
   LamTestRead(test, &r);
   PrintCurve(test);
-  printf("  modulus %.4g MPa at %.4g%s", (double)(r.modulus * test->unit), (double)test->points[0].strain,
+  printf("  modulus %.4g %s at %.4g%s", (double)(r.modulus * test->unit), units.modulus, (double)test->points[0].strain,
          units.strain);
   if (isfinite(r.poisson)) printf(", Poisson's ratio %.3f", (double)r.poisson);
   putchar('\n');
@@ -76,9 +77,9 @@ static void PrintAt(const LamTest *test, PetscReal strain)
   PetscReal stress, secant, tangent;
 
   if (LamTestAt(test, strain, &stress, &secant, &tangent))
-    printf("  at %.4g%s: %s %.4g %s, secant modulus %.4g MPa, tangent modulus %.4g MPa\n", (double)strain, units.strain,
+    printf("  at %.4g%s: %s %.4g %s, secant modulus %.4g %s, tangent modulus %.4g %s\n", (double)strain, units.strain,
            test->is_force ? "force" : "stress", (double)(stress * test->unit), units.stress,
-           (double)(secant * test->unit), (double)(tangent * test->unit));
+           (double)(secant * test->unit), units.modulus, (double)(tangent * test->unit), units.modulus);
   else
     printf("  at %.4g%s: the curve does not come there\n", (double)strain, units.strain);
 }

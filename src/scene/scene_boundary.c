@@ -32,16 +32,28 @@ static const LamKey boundary_keys[] = {
     {STRESS("macro.boundary[].pressure"), INTO(LamBoundary, traction[1]), .example = "0.01 MPa",
      .help = "At load parameter 1, against the present outward normal, per present area."},
     {MAP("macro.boundary[].plate"), .example = "{displacement: [0 mm, -1 mm]}",
-     .help = "A rigid, flat, frictionless plate that first touches the side and may leave it and come back."},
+     .help = "A rigid, flat plate that first touches the side and may leave it and come back."},
     {LENGTH("macro.boundary[].plate.displacement", "mm"), INTO(LamBoundary, displacement), .size = 2, REQUIRED,
-     .example = "[0 mm, -1 mm]", .help = "Of the plate at load parameter 1; only its part along the normal matters."},
+     .example = "[0 mm, -1 mm]",
+     .help = "Of the plate at load parameter 1; without friction only its part along the normal matters."},
     {REAL("macro.boundary[].plate.normal"), INTO(LamBoundary, normal), .size = 2,
      .default_words = "that of the side, where this is straight", .example = "[0, -1]",
      .help = "From the plate into the body."},
+    {REAL("macro.boundary[].plate.friction"), INTO(LamBoundary, friction), FROM(0), .free_word = "stuck",
+     .default_words = "none", .example = "0.3",
+     .help =
+         "Coefficient of Coulomb's friction between plate and body; `stuck`: what touches it stays where it is on it."},
     {MAP("macro.boundary[].indenter"), .example = "{radius: 2 mm, at: [5 mm, 10 mm], displacement: [0 mm, -1 mm]}",
-     .help = "A rigid, round, frictionless indenter that first touches the side and may leave it and come back."},
+     .help = "A rigid indenter that first touches the side and may leave it and come back: round, or with `edge` a "
+             "flat end "
+             "with a shaft. Of an axisymmetric body it is a sphere or a cylinder on the axis."},
     {LENGTH("macro.boundary[].indenter.radius", "mm"), INTO(LamBoundary, radius), REQUIRED, ABOVE(0), .example = "2 mm",
-     .help = "Its radius."},
+     .help = "Its radius; with `edge` half its width, of an axisymmetric body the radius of the cylinder."},
+    {LENGTH("macro.boundary[].indenter.edge", "mm"), INTO(LamBoundary, edge), FROM(0),
+     .default_words = "none: it is round, and has no shaft", .example = "0.5 mm",
+     .help = "Radius of the rounding between its flat end and its shaft, at most `radius`; 0 mm: a sharp edge."},
+    {REAL("macro.boundary[].indenter.friction"), INTO(LamBoundary, friction), FROM(0), .free_word = "stuck",
+     .default_words = "none", .example = "0.3", .help = "As of a plate."},
     {LENGTH("macro.boundary[].indenter.at", "mm"), INTO(LamBoundary, at), .size = 2, REQUIRED,
      .example = "[5 mm, 10 mm]",
      .help = "A point on the line along which its centre moves, such as the point of the side that it touches first."},
@@ -71,8 +83,10 @@ static const char *const box_sides[] = {LAM_SIDES(LAM_NAME_ENTRY) NULL};
 /* Names of the sides of a box or disc; NULL: they are in the mesh file. */
 static const char *const *SideNames(const LamMacroSpec *spec)
 {
-  static const char *const disc[][4] = {
-      [LAM_DISC_WHOLE] = {"rim"}, [LAM_DISC_HALF] = {"rim", "bottom"}, [LAM_DISC_QUARTER] = {"rim", "bottom", "left"}};
+  static const char *const disc[][4] = {[LAM_DISC_WHOLE] = {"rim"},
+                                        [LAM_DISC_HALF] = {"rim", "bottom"},
+                                        [LAM_DISC_RIGHT] = {"rim", "left"},
+                                        [LAM_DISC_QUARTER] = {"rim", "bottom", "left"}};
 
   if (spec->source == LAM_MESH_GMSH) return NULL;
   return spec->source == LAM_MESH_BOX ? box_sides : disc[spec->disc];
@@ -144,6 +158,27 @@ static PetscErrorCode CheckPlate(const LamNode *plate, PetscBool curved, LamBoun
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CheckIndenter(const LamNode *indenter, LamBoundary *boundary)
+{
+  const LamNode *edge = LamNodeFind(indenter, "edge");
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(boundary->displacement[0] != 0 || boundary->displacement[1] != 0, LamNodeFind(indenter, "displacement"),
+                "is zero, so the indenter comes from nowhere; write how it moves, such as [0 mm, -1 mm]");
+  boundary->shaft = (PetscBool)(edge != NULL);
+  LamSceneCheck(!edge || boundary->edge <= boundary->radius, edge,
+                "is larger than the radius of the indenter; write at most that");
+  PetscFunctionReturn(0);
+}
+
+/* `stuck` is infinite friction. */
+static void FindFriction(const LamNode *obstacle, LamBoundary *boundary)
+{
+  const LamNode *friction = LamNodeFind(obstacle, "friction");
+
+  if (friction && friction->value.is_free[0]) boundary->friction = INFINITY;
+}
+
 /* Checks of the kind beyond the bounds of its keys; `curved`: the side is known and not straight. */
 static PetscErrorCode CheckKind(const LamNode *entry, PetscBool curved, LamBoundary *boundary)
 {
@@ -163,12 +198,28 @@ static PetscErrorCode CheckKind(const LamNode *entry, PetscBool curved, LamBound
     PetscCall(CheckPlate(chosen, curved, boundary));
     break;
   case LAM_BOUNDARY_INDENTER:
-    LamSceneCheck(boundary->displacement[0] != 0 || boundary->displacement[1] != 0, LamNodeFind(chosen, "displacement"),
-                  "is zero, so the indenter comes from nowhere; write how it moves, such as [0 mm, -1 mm]");
+    PetscCall(CheckIndenter(chosen, boundary));
     break;
   default:
     break;
   }
+  FindFriction(chosen, boundary);
+  PetscFunctionReturn(0);
+}
+
+/* What an axisymmetric body does not have: a rigid body that moves along the radius. */
+static PetscErrorCode CheckAround(const LamNode *entry, const LamBoundary *boundary)
+{
+  const LamNode *chosen = LamNodeFind(entry, LamBoundaryKindNames[boundary->kind]);
+
+  PetscFunctionBeginUser;
+  LamSceneCheck(boundary->kind != LAM_BOUNDARY_GRIP || (boundary->given[0] && boundary->displacement[0] == 0), chosen,
+                "a rigid grip of an axisymmetric body cannot move along X1, the radius; write 0 mm for it");
+  if (boundary->kind != LAM_BOUNDARY_INDENTER) PetscFunctionReturn(0);
+  LamSceneCheck(boundary->at[0] == 0, LamNodeFind(chosen, "at"),
+                "an indenter of an axisymmetric body moves along the axis; write 0 mm for X1");
+  LamSceneCheck(boundary->displacement[0] == 0, LamNodeFind(chosen, "displacement"),
+                "an indenter of an axisymmetric body moves along the axis; write 0 mm for X1");
   PetscFunctionReturn(0);
 }
 
@@ -246,6 +297,7 @@ static PetscErrorCode BuildBoundary(const LamNode *entry, LamScene *scene, Condi
   boundary->place = LamNodePlace(LamNodeFind(entry, "on"));
   curved = (PetscBool)(*side >= 0 && NormalComponent(&scene->macro, *side) < 0);
   PetscCall(CheckKind(entry, curved, boundary));
+  if (scene->macro.symmetry == LAM_AXISYMMETRIC) PetscCall(CheckAround(entry, boundary));
   PetscCall(ReadHistory(LamNodeFind(entry, "history"), boundary));
   FindHeld(&scene->macro, *side, boundary, conditions->held[b]);
   PetscCall(CheckSameSide(&scene->macro, b, conditions));
@@ -287,7 +339,7 @@ static PetscErrorCode CheckCorners(const LamMacroSpec *spec, const Conditions *c
   Rigid motions of a box: along X1, along X2, and the rotation u = w (-X2, X1). A side constrains a translation if it
   prescribes the component. The rotation changes u1 along the vertical sides and u2 along the horizontal ones, so that
   prescribing one of these constrains it; a component that is constant along its side constrains it only together with
-  the opposite side. A grip never rotates.
+  the opposite side. A grip never rotates. An axisymmetric body can only move along X2.
 */
 static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec *spec, const Conditions *conditions)
 {
@@ -311,6 +363,7 @@ static PetscErrorCode CheckRigidMotions(const LamNode *list, const LamMacroSpec 
   if (given[LAM_BOX_LEFT][0] || given[LAM_BOX_RIGHT][0] || given[LAM_BOX_BOTTOM][1] || given[LAM_BOX_TOP][1] ||
       (given[LAM_BOX_LEFT][1] && given[LAM_BOX_RIGHT][1]) || (given[LAM_BOX_BOTTOM][0] && given[LAM_BOX_TOP][0]))
     held[2] = PETSC_TRUE;
+  if (spec->symmetry == LAM_AXISYMMETRIC) held[0] = held[2] = PETSC_TRUE;
   for (PetscInt i = 0; i < 3; i++)
     LamSceneCheckName(held[i], list, "the body can still move %s; %s", names[i], remedies[i]);
   PetscFunctionReturn(0);

@@ -7,9 +7,15 @@
 enum { DEFAULT_STEPS = 10, MAX_STEPS = 1000000 };
 
 const char *const LamDiscPartNames[] = {LAM_DISC_PARTS(LAM_NAME_ENTRY)};
+const char *const LamMacroSymmetryNames[] = {LAM_MACRO_SYMMETRIES(LAM_NAME_ENTRY)};
 
 static const LamKey mesh_keys[] = {
-    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`, in plane strain."},
+    {MAP("macro"), .example = "{mesh: {...}, boundary: [...]}", .help = "The body for `lamella fe2`."},
+    {NAME("macro.symmetry", LamMacroSymmetryNames), INTO(LamMacroSpec, symmetry), .default_value = "plane_strain",
+     .help =
+         "What the mesh is a section of: a body in `plane_strain`, or an `axisymmetric` one about X1 = 0, such as a "
+         "cylinder or a fruit between plates. Then X1 is the radius and X2 the axis, F33 = r/R, the cells' axes lie "
+         "along the hoop, and forces are those of the whole circle, in N instead of N/mm."},
     {MAP("macro.mesh"), REQUIRED, .example = "{box: [10 mm, 10 mm], elements: [8, 8]}", .help = "Its mesh."},
     {LENGTH("macro.mesh.box", "mm"), INTO(LamMacroSpec, box), .size = 2, ABOVE(0),
      .default_words = "none: one of `box`, `disc`, `gmsh`", .example = "[10 mm, 10 mm]",
@@ -20,11 +26,16 @@ static const LamKey mesh_keys[] = {
      .help = "Radius of a disc about the origin. Its sides are `rim` and, of a part, `bottom` (X2 = 0) and `left` "
              "(X1 = 0)."},
     {NAME("macro.mesh.part", LamDiscPartNames), INTO(LamMacroSpec, disc), .default_value = "whole",
-     .help = "Of a disc: `whole`, `half` (X2 >= 0) or `quarter` (X1 >= 0, too)."},
+     .help = "Of a disc: `whole`, `half` (X2 >= 0), `right` (X1 >= 0) or `quarter` (both)."},
     {INTEGER("macro.mesh.elements"), INTO(LamMacroSpec, elements), .size = 2, FROM(1), TO(1000),
      .default_words = "none: required with `box` and `disc`", .example = "[8, 8]",
      .help = "Quadratic elements: of a box along X1 and X2; of a disc along an eighth of the rim, and from the rim to "
              "the square in its middle, half as wide."},
+    {REAL("macro.mesh.grading"), INTO(LamMacroSpec, grading), .size = 2, ABOVE(0), .default_words = "equal elements",
+     .example = "[10, 0.1]",
+     .help =
+         "Of a box, along X1 and X2: the edge of the last element over that of the first. The edges between them are "
+         "a geometric series: small elements where a probe or a plate presses."},
     {PATH("macro.mesh.gmsh"), INTO(LamMacroSpec, gmsh), .default_words = "none: one of `box`, `disc`, `gmsh`",
      .example = "fruit.msh",
      .help = "A Gmsh file, its path relative to the scene's folder: triangles and quadrilaterals in the plane, "
@@ -76,7 +87,8 @@ LAM_KEY_TABLE(LamProgramKeys, program_keys);
 static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
 {
   static const char *const sources[] = {"box", "disc", "gmsh"};
-  const LamNode *elements = LamNodeFind(mesh, "elements"), *part = LamNodeFind(mesh, "part");
+  const LamNode *elements = LamNodeFind(mesh, "elements"), *part = LamNodeFind(mesh, "part"),
+                *grading = LamNodeFind(mesh, "grading");
   const LamNode *source = NULL, *unit;
   LamMacroSpec *spec = &scene->macro;
   PetscInt count = 0;
@@ -96,6 +108,8 @@ static PetscErrorCode BuildMesh(const LamNode *mesh, LamScene *scene)
   LamSceneCheck(count == 1, source, "the mesh is one of box, disc and gmsh; leave the others out");
   LamSceneCheck(!part || spec->source == LAM_MESH_DISC, part,
                 "belongs to a disc, which this mesh is not; leave it out");
+  LamSceneCheck(!grading || spec->source == LAM_MESH_BOX, grading,
+                "belongs to a box, which this mesh is not; leave it out");
   LamSceneCheck(!unit || spec->source == LAM_MESH_GMSH, unit,
                 "belongs to a Gmsh file, which this mesh is not; leave it out");
   if (spec->source == LAM_MESH_GMSH) {
@@ -197,6 +211,18 @@ static PetscErrorCode BuildControl(const LamNode *block, LamScene *scene)
 
 /* ---- the block ---- */
 
+/* The half plane of an axisymmetric body is X1 >= 0. */
+static PetscErrorCode CheckSymmetry(const LamNode *mesh, const LamMacroSpec *spec)
+{
+  const LamNode *part = LamNodeFind(mesh, "part");
+
+  PetscFunctionBeginUser;
+  if (spec->symmetry != LAM_AXISYMMETRIC || spec->source != LAM_MESH_DISC) PetscFunctionReturn(0);
+  LamSceneCheck(spec->disc == LAM_DISC_RIGHT || spec->disc == LAM_DISC_QUARTER, part ? part : LamNodeFind(mesh, "disc"),
+                "reaches beyond the axis X1 = 0 of an axisymmetric body; write part: right or part: quarter");
+  PetscFunctionReturn(0);
+}
+
 /*
   A body that inflates freely has zero total stress, and hence zero mean traction on every face, at any turgor:
   contact alone then holds no cell.
@@ -231,6 +257,7 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
   spec->inflate = (PetscBool)(scene->turgor != 0.0);
   spec->steps = DEFAULT_STEPS;
   PetscCall(LamSceneFill(block, &scene->scales, LamMacroSpec, spec));
+  PetscCall(CheckSymmetry(LamNodeFind(block, "mesh"), spec));
   PetscCall(CheckInflation(block, scene));
   LamSceneCheck(spec->area != LAM_AREA_INFLATED || spec->inflate, LamNodeFind(block, "reference"),
                 "needs the inflated body; write a turgor, and no inflate: false");

@@ -13,6 +13,20 @@
 static const char *const Names[] = {LAM_CURVE_COLUMNS(NAME_ENTRY)};
 static const char *const Units[] = {LAM_CURVE_COLUMNS(UNIT_ENTRY)};
 
+LamMacroUnits LamMacroUnitsOf(const LamScene *scene)
+{
+  const PetscReal length = scene->scales.macro_length, line = scene->scales.stress * length; /* N/m */
+
+  if (scene->macro.symmetry == LAM_AXISYMMETRIC)
+    return (LamMacroUnits){line * length, line * PetscSqr(length) * 1e3, "N", "N mm"};
+  return (LamMacroUnits){line * 1e-3, line * length, "N/mm", "N mm/mm"};
+}
+
+static const char *UnitOf(const LamCurve *curve, int column)
+{
+  return strcmp(Units[column], LAM_ENERGY_UNIT) ? Units[column] : curve->units.energy_name;
+}
+
 /* Mean over the body, weighted by reference volume; NaN if it is NaN at any point. */
 static PetscReal Mean(const LamMacroFields *fields, LamPointField field)
 {
@@ -36,9 +50,9 @@ static PetscReal Largest(const LamMacroFields *fields, LamPointField field)
 }
 
 /* To the last row of its step. */
-static void AddCertificate(LamCurve *curve, const LamMacroCertificate *certificate, const LamScales *scales)
+static void AddCertificate(LamCurve *curve, const LamMacroCertificate *certificate)
 {
-  const PetscReal unit = scales->stress * scales->macro_length * 1e-3;
+  const PetscReal unit = curve->units.force;
   PetscInt k = curve->count - 1;
 
   if (!certificate->made) return;
@@ -55,7 +69,7 @@ static void AddCertificate(LamCurve *curve, const LamMacroCertificate *certifica
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales)
 {
-  const PetscReal MPa = scales->stress * 1e-6, energy = scales->stress * PetscSqr(scales->macro_length);
+  const PetscReal MPa = scales->stress * 1e-6, energy = curve->units.energy;
   LamCurveRow row = {LAM_CURVE_COLUMNS(VALUE_ENTRY)};
 
   PetscFunctionBeginUser;
@@ -64,14 +78,14 @@ PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamM
     PetscCall(PetscStrncpy(curve->side[s], step->boundary[s], sizeof(curve->side[s])));
     for (int i = 0; i < 2; i++) {
       row.displacement[s][i] = step->displacement[s][i] * scales->macro_length * 1e3;
-      row.reaction[s][i] = step->reaction[s][i] * scales->stress * scales->macro_length * 1e-3;
+      row.reaction[s][i] = step->reaction[s][i] * curve->units.force;
       row.certified[s][i] = row.margin[s][i] = NAN;
     }
   }
   PetscCall(LamListGrow(curve->count, sizeof(row), &curve->capacity, &curve->rows));
   curve->rows[curve->count++] = row;
-  AddCertificate(curve, &step->certificate, scales);
-  AddCertificate(curve, &step->peak, scales);
+  AddCertificate(curve, &step->certificate);
+  AddCertificate(curve, &step->peak);
   PetscFunctionReturn(0);
 }
 
@@ -96,39 +110,41 @@ PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer)
 {
   const PetscInt dims[3] = {curve->count, curve->side_count, 2};
   const LamCurveRow *first = curve->rows;
+  const char *force = curve->units.force_name;
   char name[96];
 
   PetscFunctionBeginUser;
   for (int c = LAM_CURVE_STEP + 1; c < LAM_CURVE_COLUMN_COUNT; c++) {
     if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     PetscCall(PetscSNPrintf(name, sizeof(name), "/macro/curve/%s", Names[c]));
-    PetscCall(LamWriteRows(writer, name, 1, dims, &first->value[c], sizeof(*first), 1, Units[c]));
+    PetscCall(LamWriteRows(writer, name, 1, dims, &first->value[c], sizeof(*first), 1, UnitOf(curve, c)));
   }
   PetscCall(
       LamWriteRows(writer, "/macro/curve/displacement", 3, dims, first->displacement[0], sizeof(*first), 1, "mm"));
-  PetscCall(LamWriteRows(writer, "/macro/curve/reaction", 3, dims, first->reaction[0], sizeof(*first), 1, "N/mm"));
+  PetscCall(LamWriteRows(writer, "/macro/curve/reaction", 3, dims, first->reaction[0], sizeof(*first), 1, force));
   if (!curve->has_certified) PetscFunctionReturn(0);
-  PetscCall(LamWriteRows(writer, "/macro/curve/certified", 3, dims, first->certified[0], sizeof(*first), 1, "N/mm"));
-  PetscCall(
-      LamWriteRows(writer, "/macro/curve/certified_margin", 3, dims, first->margin[0], sizeof(*first), 1, "N/mm"));
+  PetscCall(LamWriteRows(writer, "/macro/curve/certified", 3, dims, first->certified[0], sizeof(*first), 1, force));
+  PetscCall(LamWriteRows(writer, "/macro/curve/certified_margin", 3, dims, first->margin[0], sizeof(*first), 1, force));
   PetscFunctionReturn(0);
 }
 
 /* "work (N mm/mm)"; columns of unit 1 have no unit in the header. */
 static void PrintHeader(FILE *out, const LamCurve *curve)
 {
+  const char *N = curve->units.force_name;
+
   for (int c = 0; c < LAM_CURVE_COLUMN_COUNT; c++) {
     if (c == LAM_CURVE_WORK) { /* what a curve is drawn of comes first */
       for (PetscInt s = 0; s < curve->side_count; s++)
-        fprintf(out, ",%s u1 (mm),%s u2 (mm),%s R1 (N/mm),%s R2 (N/mm)", curve->side[s], curve->side[s], curve->side[s],
-                curve->side[s]);
+        fprintf(out, ",%s u1 (mm),%s u2 (mm),%s R1 (%s),%s R2 (%s)", curve->side[s], curve->side[s], curve->side[s], N,
+                curve->side[s], N);
       for (PetscInt s = 0; s < curve->side_count && curve->has_certified; s++)
         for (int i = 1; i <= 2; i++)
-          fprintf(out, ",%s R%d certified (N/mm),%s R%d margin (N/mm)", curve->side[s], i, curve->side[s], i);
+          fprintf(out, ",%s R%d certified (%s),%s R%d margin (%s)", curve->side[s], i, N, curve->side[s], i, N);
     }
     if (!LamCurveHas(curve, (LamCurveColumn)c)) continue;
     fprintf(out, "%s%s", c ? "," : "", Names[c]);
-    if (strcmp(Units[c], "1")) fprintf(out, " (%s)", Units[c]);
+    if (strcmp(Units[c], "1")) fprintf(out, " (%s)", UnitOf(curve, c));
   }
   fputc('\n', out);
 }

@@ -7,13 +7,22 @@
 #include <lamella/database.h>
 #include <lamella/macro.h>
 
+/* Units of forces and energies, of a body in plane strain per thickness, and their values in units of the macroscale.
+ */
+typedef struct {
+  PetscReal force, energy;
+  const char *force_name, *energy_name; /* "N/mm" and "N mm/mm", or "N" and "N mm" */
+} LamMacroUnits;
+LamMacroUnits LamMacroUnitsOf(const LamScene *scene);
+
+#define LAM_ENERGY_UNIT "energy" /* stands for that of LamMacroUnits */
 /* Columns of a row other than displacements and reactions: name and unit in both files; value (in LamCurveAdd) of a
    step and its fields. */
 #define LAM_CURVE_COLUMNS(X)                                                                                           \
   X(LAM_CURVE_STEP, "step", "1", step->step)                                                                           \
   X(LAM_CURVE_LOAD_FACTOR, "load_factor", "1", step->load_factor)                                                      \
   X(LAM_CURVE_TIME, "time", "s", step->time) /* only for processes */                                                  \
-  X(LAM_CURVE_WORK, "work", "N mm/mm", (step->work) * energy)                                                          \
+  X(LAM_CURVE_WORK, "work", LAM_ENERGY_UNIT, (step->work) * energy)                                                    \
   X(LAM_CURVE_TURGOR, "turgor_mean", "MPa", (step->turgor_mean) * MPa)                                                 \
   X(LAM_CURVE_OPENING, "opening_fraction", "1", Mean(fields, LAM_POINT_OPENING)) /* mean over the body */              \
   X(LAM_CURVE_DEBONDED, "debonded_fraction", "1", step->debonded_fraction)       /* likewise */                        \
@@ -26,10 +35,10 @@
   X(LAM_CURVE_ELLIPTICITY, "ellipticity_min", "MPa", (step->ellipticity) * MPa) /* smallest over all points */         \
   X(LAM_CURVE_LOCALISED, "localised_points", "1", step->localised_points) /* points that have lost ellipticity */      \
   /* sums over the points with law `lamella`, and their mean; these six only with that law */                          \
-  X(LAM_CURVE_STORED, "stored", "N mm/mm", (step->stored) * energy)                                                    \
-  X(LAM_CURVE_DISSIPATED, "dissipated", "N mm/mm", (step->dissipated) * energy)                                        \
-  X(LAM_CURVE_RELEASED, "released", "N mm/mm", (step->released) * energy)                                              \
-  X(LAM_CURVE_TISSUE_WORK, "tissue_work", "N mm/mm", (step->tissue_work) * energy)                                     \
+  X(LAM_CURVE_STORED, "stored", LAM_ENERGY_UNIT, (step->stored) * energy)                                              \
+  X(LAM_CURVE_DISSIPATED, "dissipated", LAM_ENERGY_UNIT, (step->dissipated) * energy)                                  \
+  X(LAM_CURVE_RELEASED, "released", LAM_ENERGY_UNIT, (step->released) * energy)                                        \
+  X(LAM_CURVE_TISSUE_WORK, "tissue_work", LAM_ENERGY_UNIT, (step->tissue_work) * energy)                               \
   X(LAM_CURVE_BROKEN, "broken_fraction", "1", step->broken_fraction)                                                   \
   X(LAM_CURVE_MESH_DEPENDENT, "mesh_dependent", "1", step->mesh_dependent) /* 1: from here on; else 0 */               \
   X(LAM_CURVE_SEPARATED, "separated_share", "1", NAN) /* volume fraction, set by the summary; NaN: not evaluated */    \
@@ -45,16 +54,17 @@
 #define LAM_CURVE_ENTRY(symbol, name, unit, value) symbol,
 typedef enum { LAM_CURVE_COLUMNS(LAM_CURVE_ENTRY) LAM_CURVE_COLUMN_COUNT } LamCurveColumn;
 
-/* All in physical units; NaN: not known, or (displacement) free. */
+/* All in physical units, those of energies as LamMacroUnits; NaN: not known, or (displacement) free. */
 typedef struct {
   PetscReal value[LAM_CURVE_COLUMN_COUNT];
   PetscReal displacement[LAM_MAX_BOUNDARIES][2]; /* mm */
-  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body, N per mm of thickness */
+  PetscReal reaction[LAM_MAX_BOUNDARIES][2];     /* force on the body */
   PetscReal certified[LAM_MAX_BOUNDARIES][2];    /* the same, corrected by direct solves */
   PetscReal margin[LAM_MAX_BOUNDARIES][2];       /* half the width of its interval of 99 % */
 } LamCurveRow;
 
 typedef struct {
+  LamMacroUnits units;
   PetscInt side_count;
   PetscBool has_certified; /* of any row */
   char side[LAM_MAX_BOUNDARIES][LAM_NAME_LENGTH];
@@ -62,6 +72,7 @@ typedef struct {
   LamCurveRow *rows; /* owned */
 } LamCurve;
 
+/* With the units of the curve. */
 PetscErrorCode LamCurveAdd(LamCurve *curve, const LamMacroStep *step, const LamMacroFields *fields,
                            const LamScales *scales);
 PetscErrorCode LamCurveDestroy(LamCurve *curve);

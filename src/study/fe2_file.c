@@ -237,14 +237,15 @@ static PetscErrorCode WriteFields(LamFE2File file, PetscInt step, const LamMacro
 static PetscErrorCode WriteObstacles(LamFE2File file, const LamMacroStep *step)
 {
   const PetscReal mm = file->scales.macro_length * 1e3;
-  const PetscInt dims[2] = {step->obstacle_count, 5};
-  PetscReal rows[LAM_MAX_BOUNDARIES][5];
+  enum { COLUMNS = PETSC_STATIC_ARRAY_LENGTH(step->obstacle[0]) };
+  const PetscInt dims[2] = {step->obstacle_count, COLUMNS};
+  PetscReal rows[LAM_MAX_BOUNDARIES][COLUMNS];
   char path[128];
 
   PetscFunctionBeginUser;
   if (!step->obstacle_count) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < 5 * step->obstacle_count; k++)
-    rows[k / 5][k % 5] = step->obstacle[k / 5][k % 5] * (k % 5 == 2 || k % 5 == 3 ? 1 : mm);
+  for (PetscInt o = 0; o < dims[0]; o++)
+    for (PetscInt i = 0; i < COLUMNS; i++) rows[o][i] = step->obstacle[o][i] * (i == 2 || i == 3 ? 1 : mm);
   PetscCall(PetscSNPrintf(path, sizeof(path), "/macro/step/%" PetscInt_FMT "/obstacles", step->step));
   PetscCall(LamWriteRows(file->writer, path, 2, dims, rows[0], sizeof(rows[0]), 1, "mm"));
   PetscFunctionReturn(0);

@@ -12,7 +12,7 @@
     /macro/step/<k>/<name>  [element]      means (<name>) and largest values (<name>_max) over the material points, and
                                            their ratios to the strengths that the scene gives (<name>_ratio,
                                            <name>_ratio_max); ellipticity has <name>_min, its smallest value
-    /macro/step/<k>/obstacles [o][5]       plates and indenters: LamMacroStep.obstacle, mm and 1
+    /macro/step/<k>/obstacles [o][6]       plates and indenters: LamMacroStep.obstacle, mm and 1
     /macro/curve/<name>     [step]; /macro/curve/displacement, reaction [step][side][2], mm and N/mm: fe2_curve.h
     /macro/summary                         JSON, for the steps so far: fe2_summary.h
     /macro/steps            [step]         numbers of the complete steps; written last

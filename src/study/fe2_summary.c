@@ -40,6 +40,7 @@ PetscErrorCode LamSummaryCreate(const LamScene *scene, LamSummary *summary)
   PetscFunctionBeginUser;
   *summary =
       (LamSummary){.scene = scene, .strength = *strength, .side = -1, .firmest = -1, .F0 = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  summary->curve.units = LamMacroUnitsOf(scene);
   summary->onset[LAM_SUMMARY_NORMAL].judged = (PetscBool)isfinite(strength->lamella_normal);
   summary->onset[LAM_SUMMARY_SHEAR].judged = (PetscBool)isfinite(strength->lamella_shear);
   summary->onset[LAM_SUMMARY_UNLOADED].judged = contact;
@@ -218,7 +219,7 @@ static PetscReal Along(const LamSummary *summary, const PetscReal vector[2])
   return sum;
 }
 
-/* Displacement (mm) or reaction (N/mm) of the loaded side along its direction, at a row. */
+/* Displacement (mm) or reaction of the loaded side along its direction, at a row. */
 static PetscReal Displacement(const LamSummary *summary, PetscInt row)
 {
   return Along(summary, summary->curve.rows[row].displacement[summary->side]);
@@ -276,7 +277,7 @@ static PetscReal Tangent(const LamSummary *summary, PetscInt a, PetscInt b, Pets
   return chord + (next - chord) / (u[2] - u[0]) * (u[0] - u[1]);
 }
 
-/* Sets height and length if the loaded side is an edge of a box. */
+/* Sets height and length, or area, if the loaded side is an edge of a box. */
 static void MeasureBox(LamSummary *summary)
 {
   static const char *const upright[] = {"left", "right"}, *const level[] = {"bottom", "top"};
@@ -290,6 +291,8 @@ static void MeasureBox(LamSummary *summary)
     summary->is_level = is_level;
     summary->height = box[is_level ? 1 : 0] * mm;
     summary->length = box[is_level ? 0 : 1] * mm;
+    if (summary->scene->macro.symmetry != LAM_AXISYMMETRIC) continue;
+    summary->length *= PETSC_PI * box[0] * mm * (is_level ? 1 : 2); /* of the end, or the mantle, of the cylinder */
   }
 }
 
@@ -467,9 +470,10 @@ static void SetLoadedSide(json_t *o, const LamSummary *summary)
   SetTest(o, summary);
   json_object_set_new(o, "stiffness", SlopesToJSON(&summary->stiffness, 1));
   if (isfinite(factor)) {
+    const PetscBool around = (PetscBool)(summary->scene->macro.symmetry == LAM_AXISYMMETRIC);
     json_t *modulus = SlopesToJSON(&summary->stiffness, factor);
     json_object_set_new(modulus, "height", LamJSONReal(summary->height));
-    json_object_set_new(modulus, "length", LamJSONReal(summary->length));
+    json_object_set_new(modulus, around ? "area" : "length", LamJSONReal(summary->length));
     json_object_set_new(o, "modulus", modulus);
   }
   if (k < 0) return;
@@ -512,6 +516,8 @@ json_t *LamSummaryToJSON(const LamSummary *summary)
 
   if (!summary->curve.count) return o;
   SetOnsets(o, summary);
+  json_object_set_new(o, "force_unit", json_string(summary->curve.units.force_name));
+  json_object_set_new(o, "energy_unit", json_string(summary->curve.units.energy_name));
   json_object_set_new(o, "work", LamJSONReal(summary->curve.rows[summary->curve.count - 1].value[LAM_CURVE_WORK]));
   if (LamCurveHas(&summary->curve, LAM_CURVE_BROKEN)) SetLamella(o, summary);
   if (summary->side >= 0) SetLoadedSide(o, summary);

@@ -50,7 +50,7 @@ typedef struct {
   PetscReal place[2];      /* reference position, mm */
 } LamSummaryOnset;
 
-/* Slopes of reaction (N/mm) over displacement (mm): N/mm per mm, that is MPa; NaN: too few steps. */
+/* Slopes of reaction over displacement (mm): N/mm per mm, that is MPa, or N/mm of a whole body; NaN: too few steps. */
 typedef struct {
   PetscReal initial, final; /* tangents of the parabolas through the first and the last three steps */
   PetscReal secant;         /* from the first step to that of the largest displacement */
@@ -69,8 +69,9 @@ typedef struct {
   PetscInt side;          /* the loaded side; -1: none is moved */
   PetscReal direction[2]; /* of its displacement */
   LamSummaryStiffness stiffness;
-  PetscReal height, length; /* of a box, perpendicular to and along the loaded side, mm; moduli are stiffness * height /
-                               length; NaN: not a box, or not one of its sides */
+  PetscReal height, length; /* of a box, perpendicular to and along the loaded side, mm, or of a cylinder the area of
+                               that side, mm^2; moduli are stiffness * height / length; NaN: not a box, or not one of
+                               its sides */
   PetscBool is_level;       /* the loaded side of the box is along X1 */
   PetscInt firmest;         /* row of the largest reaction along the displacement; -1: none is positive */
 } LamSummary;

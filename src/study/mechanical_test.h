@@ -30,8 +30,8 @@ typedef struct {
   int component, lateral; /* row-major index of the component of F that is driven; -1: none. Its free neighbour; -1 */
   const LamScene *scene;  /* borrowed */
   const char *side;       /* the loaded side of a body; NULL: a material point; borrowed */
-  PetscBool is_force;     /* strain is u in mm, stress R in N/mm */
-  PetscReal unit;         /* of stress, MPa or N/mm */
+  PetscBool is_force;     /* strain is u in mm, stress R in N/mm, of a whole body in N */
+  PetscReal unit;         /* of stress, MPa, N/mm or N */
   PetscBool inflated;     /* it counts from the inflated tissue, and stress is ... */
   LamArea area;           /* ... per this area */
   PetscReal F0[9];        /* of the inflated tissue, or the identity */

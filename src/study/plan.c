@@ -61,7 +61,8 @@ static PetscErrorCode MeasureSpread(const LamMicrostructure *micro, LamCellSprea
 /* Number of elements of the body; 0 if they are in a file that is not read yet. */
 static PetscInt CountElements(const LamMacroSpec *macro)
 {
-  static const PetscInt quadrants[] = {[LAM_DISC_WHOLE] = 4, [LAM_DISC_HALF] = 2, [LAM_DISC_QUARTER] = 1};
+  static const PetscInt quadrants[] = {
+      [LAM_DISC_WHOLE] = 4, [LAM_DISC_HALF] = 2, [LAM_DISC_RIGHT] = 2, [LAM_DISC_QUARTER] = 1};
 
   switch (macro->source) {
   case LAM_MESH_BOX:

@@ -1,6 +1,6 @@
 /*
-  Readings of a mechanical test as JSON. Stresses in MPa, energies in kJ/m^3; of a body that is no box forces in N/mm,
-  energies in N mm/mm.
+  Readings of a mechanical test as JSON. Stresses in MPa, energies in kJ/m^3; of a body that is no box forces in N/mm
+  and energies in N mm/mm, of an axisymmetric one N and N mm.
 */
 #include "mechanical_test.h"
 #include "json.h"

@@ -29,8 +29,43 @@ static void GmshCell(FILE *file, GmshElements elements, int *number, const int v
   fprintf(file, "%d 2 2 5 5 %d %d %d\n", ++*number, odd ? v[1] : v[0], v[2], v[3]);
 }
 
+static void GmshNodes(FILE *file, int nx, int ny, GmshMap map)
+{
+  fprintf(file, "$Nodes\n%d\n", (nx + 1) * (ny + 1));
+  for (int j = 0; j <= ny; j++) {
+    for (int i = 0; i <= nx; i++) {
+      double X[2] = {(double)i / nx, (double)j / ny};
+      map(X);
+      fprintf(file, "%d %.17g %.17g 0\n", j * (nx + 1) + i + 1, X[0], X[1]);
+    }
+  }
+}
+
+/* Quadratic elements and sides over a grid of twice as many nodes. */
+static void GmshCurved(FILE *file, int nx, int ny)
+{
+  const int across = 2 * nx + 1, up = 2 * ny * across;
+  int number = 0;
+
+  for (int i = 1; i < across; i += 2) {
+    fprintf(file, "%d 8 2 1 1 %d %d %d\n", ++number, i, i + 2, i + 1);
+    fprintf(file, "%d 8 2 3 3 %d %d %d\n", ++number, up + i, up + i + 2, up + i + 1);
+  }
+  for (int j = 0; j < 2 * ny; j += 2) {
+    const int left = j * across + 1, right = left + across - 1;
+    fprintf(file, "%d 8 2 2 2 %d %d %d\n", ++number, right, right + 2 * across, right + across);
+    fprintf(file, "%d 8 2 4 4 %d %d %d\n", ++number, left, left + 2 * across, left + across);
+  }
+  for (int j = 0; j < 2 * ny; j += 2) {
+    for (int v = j * across + 1; v < (j + 1) * across; v += 2)
+      fprintf(file, "%d 10 2 5 5 %d %d %d %d %d %d %d %d %d\n", ++number, v, v + 2, v + 2 + 2 * across, v + 2 * across,
+              v + 1, v + 2 + across, v + 1 + 2 * across, v + across, v + 1 + across);
+  }
+}
+
 void GmshWrite(char path[], int nx, int ny, GmshElements elements, GmshMap map)
 {
+  const int curved = elements == GMSH_CURVED ? 2 : 1;
   const char *folder = getenv("TMPDIR");
   FILE *file;
   int number = 0;
@@ -40,24 +75,18 @@ void GmshWrite(char path[], int nx, int ny, GmshElements elements, GmshMap map)
   if (!file) abort();
   fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 1 \"bottom\"\n1 2 \"right\"\n1 3 \"top\"\n"
                 "1 4 \"left\"\n2 5 \"body\"\n$EndPhysicalNames\n");
-  fprintf(file, "$Nodes\n%d\n", (nx + 1) * (ny + 1));
-  for (int j = 0; j <= ny; j++) {
-    for (int i = 0; i <= nx; i++) {
-      double X[2] = {(double)i / nx, (double)j / ny};
-      map(X);
-      fprintf(file, "%d %.17g %.17g 0\n", j * (nx + 1) + i + 1, X[0], X[1]);
-    }
-  }
+  GmshNodes(file, curved * nx, curved * ny, map);
   fprintf(file, "$EndNodes\n$Elements\n%d\n", 2 * (nx + ny) + nx * ny * (elements == GMSH_TRIANGLES ? 2 : 1));
-  for (int i = 1; i <= nx; i++) {
+  if (curved > 1) GmshCurved(file, nx, ny);
+  for (int i = 1; i <= nx && curved == 1; i++) {
     GmshSide(file, &number, 1, i, i + 1);
     GmshSide(file, &number, 3, ny * (nx + 1) + i, ny * (nx + 1) + i + 1);
   }
-  for (int j = 0; j < ny; j++) {
+  for (int j = 0; j < ny && curved == 1; j++) {
     GmshSide(file, &number, 2, (j + 1) * (nx + 1), (j + 2) * (nx + 1));
     GmshSide(file, &number, 4, j * (nx + 1) + 1, (j + 1) * (nx + 1) + 1);
   }
-  for (int j = 0; j < ny; j++) {
+  for (int j = 0; j < ny && curved == 1; j++) {
     for (int i = 0; i < nx; i++) {
       const int first = j * (nx + 1) + i + 1, v[4] = {first, first + 1, first + nx + 2, first + nx + 1};
       GmshCell(file, elements, &number, v, (i + j) % 2);

@@ -9,7 +9,11 @@
 #include <unistd.h>
 #include <petscsys.h>
 
-typedef enum { GMSH_QUADRILATERALS, GMSH_TRIANGLES } GmshElements;
+typedef enum {
+  GMSH_QUADRILATERALS,
+  GMSH_TRIANGLES,
+  GMSH_CURVED /* quadrilaterals whose nine nodes are mapped */
+} GmshElements;
 
 /* From (xi, eta) in the unit square, which X holds, to the place. */
 typedef void (*GmshMap)(double X[2]);

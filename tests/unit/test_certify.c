@@ -34,7 +34,7 @@ static PetscErrorCode RespondBadly(void *ctx, PetscInt n, const LamLoad loads[],
     if (responses[i].status != LAM_CONVERGED) continue;
     responses[i].source = LAM_SOURCE_DATABASE;
     responses[i].error_estimate = size * pow(4, Noise(points[i], 2));
-    for (int k = 0; k < 5; k++) responses[i].P[k] += size * Noise(points[i], 3 + k);
+    for (int k = 0; k < 9; k++) responses[i].P[k] += size * Noise(points[i], 3 + k);
   }
   PetscFunctionReturn(0);
 }
@@ -162,6 +162,26 @@ PAIR_TEST(PlateIsCorrected)
   LamBoundary *plate = FixtureAdd(&pair->run, "rim", LAM_BOUNDARY_PLATE);
   plate->displacement[1] = -0.15;
   plate->normal[1] = -1;
+  CheckLast(pair);
+}
+
+/* The stress around the axis counts, too; with a round probe, and nodes on the axis. */
+PAIR_TEST(AxisymmetricBodyIsCorrected)
+{
+  FixtureScene(&pair->run, 4, 3, 1, 3);
+  pair->run.scene.macro.symmetry = LAM_AXISYMMETRIC;
+  FixtureBoundary(&pair->run, "bottom", 0, 0);
+  FixtureIndenter(&pair->run, 0.6, 0, 1, 0, -0.15);
+  CheckLast(pair);
+}
+
+PAIR_TEST(InflatedAxisymmetricBodyIsCorrected)
+{
+  FixtureScene(&pair->run, 3, 3, 1, 2);
+  pair->run.scene.macro.symmetry = LAM_AXISYMMETRIC;
+  FixtureBoundary(&pair->run, "bottom", 0, 0);
+  FixtureBoundary(&pair->run, "top", 0, -0.15);
+  FixtureInflate(&pair->run);
   CheckLast(pair);
 }
 

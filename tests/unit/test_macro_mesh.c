@@ -24,7 +24,7 @@ static PetscReal Area(LamMacro macro)
 /* Error of the area of a part of a disc of radius 1. */
 static PetscReal DiscError(LamDiscPart part, PetscInt along)
 {
-  static const PetscReal share[] = {1, 0.5, 0.25};
+  static const PetscReal share[] = {1, 0.5, 0.5, 0.25};
   PetscReal error;
   FIXTURE fixture;
 

@@ -64,9 +64,9 @@ MACRO_TEST(StepsTellWhereObstaclesAre)
   indenter->displacement[1] = -0.04;
   FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
   const LamMacroStep *step = &fixture->macro->step;
-  const PetscReal expected[2][5] = {{0.95, 0, -1, 0, 0}, {0.5, 1.26, 0, -1, 0.3}};
+  const PetscReal expected[2][6] = {{0.95, 0, -1, 0, 0, 0}, {0.5, 1.26, 0, -1, 0.3, 0.3}};
   assert_int_equal(step->obstacle_count, 2);
-  for (int i = 0; i < 10; i++) assert_true(PetscAbsReal(step->obstacle[i / 5][i % 5] - expected[i / 5][i % 5]) < 1e-12);
+  for (int i = 0; i < 12; i++) assert_near(step->obstacle[i / 6][i % 6], expected[i / 6][i % 6], 1e-12);
 }
 
 /* No node is in the indenter, none is pulled, and all that are pressed touch it. */
@@ -89,7 +89,7 @@ MACRO_TEST(ComplementarityHolds)
   CHECK(VecGetArrayRead(macro->u, &u));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     const LamObstacleNode *node = &macro->obstacle_nodes[k];
-    const LamTouch touch = LamMacroNearest(macro, node, u);
+    const LamTouch touch = LamMacroNearest(macro, node, u, NULL);
     const PetscReal f[2] = {PetscRealPart(force[node->local]), PetscRealPart(force[node->local + 1])},
                     lambda = f[0] * touch.normal[0] + f[1] * touch.normal[1],
                     aside = f[0] * touch.normal[1] - f[1] * touch.normal[0];
