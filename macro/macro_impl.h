@@ -3,14 +3,12 @@
 
     mesh.c      distribution, numbering, named sets, geometry of elements
     mesh_box.c, mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
-    element.c   kinds of elements: shape functions, Gauss points
-    facet.c     geometry of the boundary facets
+    element.c, facet.c   shape functions and Gauss points of elements, geometry of the boundary facets
     boundary.c  prescribed displacements
     traction.c  dead and follower tractions
     obstacle.c  rigid plates and indenters
     rows.c      equations of nodes with prescribed displacement or in contact with an obstacle
-    border.c    unknowns other than nodal displacements: grips and the traction factor
-    reaction.c  reactions and work
+    border.c, reaction.c   unknowns other than nodal displacements: grips, traction factor; reactions and work
     certify.c, correction.c, sensitivity.c, sample.c, waypoints.c   reactions corrected by another responder
     assembly.c  gather F, query the responder, assemble force and tangent
     sealed.c    pressures of sealed lumens
@@ -19,8 +17,7 @@
     stepping.c  Newton, load steps, cutback
     instant.c   equilibrium at an instant, for time integration
     localisation.c    ellipticity at the material points
-    fields.c    response fields stored for output, gathering of fields on rank 0
-    checkpoint.c restart data
+    fields.c, checkpoint.c   response fields stored for output, gathering of fields on rank 0; restart data
 
   The dimension `dim` of the body is that of its mesh; only the responder assumes that it is 2 (plane strain, or the
   half plane of radius and axis of an axisymmetric body, whose F33 = 1 + u1 / X1).

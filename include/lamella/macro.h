@@ -112,7 +112,8 @@ LAM_EXPORT PetscErrorCode LamMacroSetResponder(LamMacro macro, LamResponder resp
 /*
   Reactions are corrected, to first order, by the stress P of a second responder at the converged F of material points
   (LamMacroStep.certificate, peak); it need not know more than P. Borrows it. Not for load control, free grips,
-  sealed cells and friction: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after LamMacroSetUp.
+  sealed cells and friction: PETSC_ERR_USER_INPUT with LAM_CERTIFY_ALL, else certificates say why. Call after
+  LamMacroSetUp.
 
   LAM_CERTIFY_ALL: the reference is asked for all points of this rank at once, in the inflated body and in each step,
   and accepts. LAM_CERTIFY_SHARE: for one point at a time, at different times on the ranks; `reject` makes it start from

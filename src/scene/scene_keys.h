@@ -186,7 +186,8 @@ PetscErrorCode LamSceneReadWall(const LamNode *map, const LamScales *scales, con
 PetscErrorCode LamSceneBuildRelaxation(const LamNode *root, LamRelaxation *relaxation);
 /* Rejects a factor that takes a wall parameter beyond the upper bound of its key in some wall of the scene. */
 PetscErrorCode LamSceneCheckFactor(const LamNode *node, const LamScene *scene, PetscInt parameter, PetscReal factor);
-/* Rejects an F that is not a deformation gradient, if its components are given; any: shears out of the plane are allowed.
+/* Rejects an F that is not a deformation gradient, if its components are given; any: shears out of the plane are
+ * allowed.
  */
 PetscErrorCode LamSceneCheckF(const LamNode *node, PetscBool any);
 /* Reads the control from the tensors of an entry (P_node NULL: F alone), stresses over `scale`. Rejects components

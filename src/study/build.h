@@ -11,8 +11,8 @@
 /*
   State number `index` (0, 1, ...) of the scene's sample box: point index + 1 of the Halton sequence with bases
   2, 3, 5, 7, 11 for two principal logarithmic strains, the angle between the first principal direction and face normal
-  0, turgor, and ln F33 if the box has a range of it. F in the plane is the right stretch U. The angle ranges over `wedge`, radian.
-  Source: J. H. Halton, Numer. Math. 2 (1960) 84-90.
+  0, turgor, and ln F33 if the box has a range of it. F in the plane is the right stretch U. The angle ranges over
+  `wedge`, radian. Source: J. H. Halton, Numer. Math. 2 (1960) 84-90.
 */
 void LamSampleLoad(const LamScene *scene, PetscReal wedge, PetscInt64 index, LamLoad *load);
 /* The angle that covers the box: 30 degrees with all motions of a hexagon, else 90, as either stretch comes first. */

@@ -69,7 +69,7 @@ PetscErrorCode LamRVERunPrepare(LamRVERun *run)
   LamWarnOfZone(PETSC_COMM_WORLD, &run->reporter, &plan.micro, &run->scene->scales);
   run->scene->micro = plan.micro;
   if (run->find_failure && contact) run->second_mesh = PETSC_TRUE; /* separation is determined on two meshes */
-  if (run->derivatives) run->scene->out_of_plane = PETSC_TRUE; /* all entries of the tangent */
+  if (run->derivatives) run->scene->out_of_plane = PETSC_TRUE;     /* all entries of the tangent */
   PetscCall(LamMeshesCreate(plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD, run->scene,
                             run->second_mesh ? 2 : 1, &run->meshes));
   PetscCall(LamMeshesSetInterrupt(&run->meshes, LamStopInterrupt, NULL));

@@ -1,5 +1,5 @@
-/* Times of answers from the table, part by part, and of whole queries with and without the axis F33; the net work of closed cycles and the order of convergence for a known
-   potential. Prints figures, asserts nothing. */
+/* Times of answers from the table, part by part, and of whole queries with and without the axis F33; the net work of
+   closed cycles and the order of convergence for a known potential. Prints figures, asserts nothing. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -97,8 +97,7 @@ static void SetUp(Fixture *fixture, MPI_Comm comm, Kind kind)
                                              .wall = {.C1 = 0.9, .C2 = 0.1, .C4 = 9, .bulk_modulus = 1000},
                                              .along = 4,
                                              .through = 1};
-  if (kind == CACHE_OF_F33) fixture->scene.sample.F33_min = 0.9;
-  if (kind == CACHE_OF_F33) fixture->scene.sample.F33_max = 1.2;
+  if (kind == CACHE_OF_F33) fixture->scene.sample.F33_min = 0.9, fixture->scene.sample.F33_max = 1.2;
   CHECK(LamDatabaseCreateEmpty(&fixture->scene, &fixture->database));
   if (kind != NO_GRID) {
     CHECK(LamGridCreate(&fixture->scene, NULL, &grid));
@@ -478,8 +477,6 @@ CACHE_TEST(NoModelIsTakenToBesideAFailure, CACHE_WITH_BAD_NODES)
   }
 }
 
-/* ---- F33 ---- */
-
 static PetscReal AxialError(const Fixture *fixture, PetscInt p)
 {
   LamResponse exact;
@@ -492,12 +489,11 @@ static PetscReal AxialError(const Fixture *fixture, PetscInt p)
 /* A question adds the nodes of the knots of F33 next to it; another interval of F33 has one of them already. */
 CACHE_TEST(NodesAreSolvedAtTheKnotsAroundAnF33, CACHE_OF_F33)
 {
-  PetscInt first;
-
   SetLoad(fixture, 0, 0.1);
   fixture->loads[0].F[8] = 0.95;
   Respond(fixture, 1);
-  first = RecordCount(fixture);
+  const PetscInt first = RecordCount(fixture);
+
   assert_int_equal(first % 2, 0);
   assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
   assert_true(Error(fixture, 0) < ACCURACY && AxialError(fixture, 0) < ACCURACY);

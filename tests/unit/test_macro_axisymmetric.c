@@ -12,7 +12,7 @@ static void Cylinder(Fixture *fixture, PetscInt nx, PetscInt ny, PetscReal heigh
 
 static LamResponse Exact(PetscReal around, PetscReal along, PetscReal turgor)
 {
-  const LamLoad load = {{around, 0, 0, 0, along, 0, 0, 0, around}, turgor, 0};
+  const LamLoad load = {.F = {around, 0, 0, 0, along, 0, 0, 0, around}, .turgor = turgor};
   const Synthetic material = {.mu = 1, .lambda = 2, .phi = 1}; /* as SyntheticCreate */
   LamResponse exact;
 

@@ -19,7 +19,7 @@ static const PetscReal OUTER = 2; /* radius; the inner one is 1 */
 static LamResponse At(PetscInt k, PetscReal l, PetscReal t)
 {
   const Synthetic material = {.mu = 1, .lambda = 2, .phi = 1}; /* as SyntheticCreate */
-  const LamLoad load = {{l, 0, 0, 0, k == 1 ? 1 : t, 0, 0, 0, t}, 0, 0};
+  const LamLoad load = {.F = {l, 0, 0, 0, k == 1 ? 1 : t, 0, 0, 0, t}};
   LamResponse r;
 
   CHECK(LamResponseInit(&load, &r));

@@ -25,7 +25,7 @@
 static PetscReal Modulus(const Told *told)
 {
   const LamWaterSpec *water = &told->scene->process.water;
-  LamLoad load = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, told->scene->turgor, 0};
+  LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = told->scene->turgor};
   Synthetic material = {.mu = 1, .lambda = 2, .phi = 0.7, .c = 0.05};
   LamResponse r;
 
