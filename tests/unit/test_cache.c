@@ -493,7 +493,6 @@ CACHE_TEST(NodesAreSolvedAtTheKnotsAroundAnF33, CACHE_OF_F33)
   fixture->loads[0].F[8] = 0.95;
   Respond(fixture, 1);
   const PetscInt first = RecordCount(fixture);
-
   assert_int_equal(first % 2, 0);
   assert_int_equal(fixture->responses[0].status, LAM_CONVERGED);
   assert_true(Error(fixture, 0) < ACCURACY && AxialError(fixture, 0) < ACCURACY);
