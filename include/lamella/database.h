@@ -147,8 +147,8 @@ LAM_EXPORT PetscErrorCode LamDatabaseMerge(const char out[], PetscInt n, const c
 /*
   ---- the table: the potential interpolated on a grid of states ----
 
-  The grid points (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, and
-  for contact tissue suction s = turgor + cohesion; docs/theory/database.md, The tabulated potential. LamKeyIsNode
+  The grid points (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, for
+  contact tissue suction s = turgor + cohesion, and F33 if the sample box has a range of it; docs/theory/database.md, The tabulated potential. LamKeyIsNode
   tells from its key whether a record is a node. The grid is coarse initially and refined where it is queried; the
   nodes present determine range and accuracy of the table.
 */
@@ -206,7 +206,8 @@ LAM_EXPORT PetscErrorCode LamTableDestroy(LamTable *table);
 /*
   Evaluates the table if the estimated error is at most `accuracy` (PETSC_INFINITY: any), otherwise status
   LAM_OUT_OF_REACH with a reason. Energy, in-plane stress and tangent and all derivatives with respect to turgor and
-  cohesion come from one potential; P33 and its row of the tangent are interpolated separately. Indicators are
+  cohesion come from one potential; so do P33 and its row of the tangent with a range of F33, otherwise they are
+  interpolated separately. Indicators are
   interpolated between the surrounding nodes, within their bounds; response->indicators_trusted: whether the nodes
   agree. error_estimate is an estimate of LamStressError. Thread-safe.
 */

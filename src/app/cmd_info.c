@@ -122,6 +122,7 @@ static void PrintGrid(const json_t *grid)
          json_number_value(json_object_get(grid, "origin")));
   if (turgor) {
     printf(", at turgor %.4g MPa\n", json_number_value(turgor));
+    PrintRange("  grid of F33", json_object_get(grid, "F33"), "");
     return;
   }
   printf(" of free cells, at cohesion %.4g MPa\n", json_number_value(json_object_get(grid, "cohesion")));

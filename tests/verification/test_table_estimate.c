@@ -79,6 +79,7 @@ static LamLoad RandomLoad(uint64_t *seed, const LamSample *box)
       .F = {c * c * e0 + s * s * e1, c * s * (e0 - e1), 0, c * s * (e0 - e1), s * s * e0 + c * c * e1, 0, 0, 0, 1}};
 
   load.turgor = RandomReal(seed, box->turgor_min, box->turgor_max);
+  if (box->F33_max > box->F33_min) load.F[8] = RandomReal(seed, box->F33_min, box->F33_max);
   return load;
 }
 
@@ -185,6 +186,40 @@ TEST(contact_answers_know_their_error)
   check_bounds(pairs, n);
   Finish(&t);
 }
+
+/* ---- a range of F33 ---- */
+
+static const char bonded_axial[] = TISSUE "  interface: {law: bonded}\n"
+                                          "sample:\n"
+                                          "  stretch: {min: -0.02, max: 0.25}\n"
+                                          "  turgor: {min: 0 MPa, max: 0.05 MPa}\n"
+                                          "  F33: {min: 0.85, max: 1.15}\n";
+static const char contact_axial[] = TISSUE "  interface: {law: contact}\n"
+                                           "sample:\n"
+                                           "  stretch: {min: 0.04, max: 0.1}\n"
+                                           "  turgor: {min: 0.02 MPa, max: 0.04 MPa}\n"
+                                           "  F33: {min: 0.9, max: 1.1}\n";
+
+/* P33, a derivative of the potential, is as near to the solves as P. */
+static void check_axial(const char scene[], PetscReal accuracy, int states, int least)
+{
+  Pair pairs[BONDED_STATES];
+  int n, near = 0;
+  LamStressScale scale;
+  Tissue t;
+
+  Start(scene, &t);
+  scale = LamStressScaleOf(&t.scene->micro);
+  n = Compare(&t, accuracy, states, pairs);
+  assert_true(n >= least);
+  check_estimates(pairs, n, 0.05, accuracy);
+  for (int i = 0; i < n; i++) near += LamAxialError(scale, pairs[i].answer.P, pairs[i].solve.P) < accuracy;
+  assert_true(near >= 0.95 * n);
+  Finish(&t);
+}
+
+TEST_IS(bonded_answers_at_any_F33_know_their_error, check_axial(bonded_axial, 0.01, BONDED_STATES, 50));
+TEST_IS(contact_answers_at_any_F33_know_their_error, check_axial(contact_axial, 0.03, CONTACT_STATES, 15));
 
 static PetscReal Sum(const PetscReal a[3])
 {
