@@ -273,6 +273,7 @@ static PetscErrorCode SetUpRVE(LamBindRVE bound)
   PetscFunctionBeginUser;
   PetscCall(LamPlanMake(bound->scene, &plan));
   bound->scene->micro = plan.micro;
+  bound->scene->out_of_plane = PETSC_TRUE; /* any F, and all entries of the tangent */
   PetscCall(LamMeshesCreate(PETSC_COMM_SELF, bound->scene, 1, &bound->meshes));
   PetscCall(ResetRVE(bound));
   PetscFunctionReturn(0);
