@@ -105,7 +105,8 @@ thicker[2, 2] = 1.02
 assert sims[1].solve(data(thicker), 0.1)["solved"]
 out_of_plane = F(0.03)
 out_of_plane[0, 2] = 0.01
-raises(lamella_micro.NoResponse, "out-of-plane shear", lambda: sims[0].solve(data(out_of_plane), 0.1))
+sheared = P(sims[1].solve(data(out_of_plane), 0.1))
+assert np.isfinite(sheared).all() and sheared[0, 2] != 0
 assert sims[0].get_state() == kept
 sims[0].solve(data(F(0.03)), 0.1)
 raises(lamella.InputError, "strains7to9: not in the data read", lambda: sims[0].solve({"strains1to3": [1, 0, 0], "strains4to6": [0, 1, 0]}, 0.1))
