@@ -2,6 +2,7 @@
   Kinetic laws, pointwise.
 */
 #include <lamella/kinetics.h>
+#include <lamella/scene.h>
 #include <math.h>
 #include <string.h>
 
@@ -123,4 +124,12 @@ PetscBool LamKineticsAgree(const LamKinetics *one, const LamKinetics *other)
     if (one->time[k] != other->time[k] || one->factor[k] != other->factor[k]) return PETSC_FALSE;
   return (PetscBool)(RatesAgree(&one->rate, &other->rate) && RatesAgree(&one->second, &other->second) &&
                      one->plateau == other->plateau && one->share == other->share && one->enzyme == other->enzyme);
+}
+
+PetscBool LamTransportHasPotentials(const LamScene *scene)
+{
+  const LamTransportSpec *spec = &scene->process.transport;
+
+  if (!spec->given || isinf(spec->apoplast)) return PETSC_FALSE;
+  return (PetscBool)(spec->cell_to_cell > 0 || (spec->apoplast > 0 && scene->process.water.permeability > 0));
 }

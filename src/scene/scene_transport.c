@@ -31,14 +31,6 @@ static const LamKey transport_keys[] = {
 };
 LAM_KEY_TABLE(LamTransportKeys, transport_keys);
 
-PetscBool LamTransportHasPotentials(const LamScene *scene)
-{
-  const LamTransportSpec *spec = &scene->process.transport;
-
-  if (!spec->given || isinf(spec->apoplast)) return PETSC_FALSE;
-  return (PetscBool)(spec->cell_to_cell > 0 || (spec->apoplast > 0 && scene->process.water.permeability > 0));
-}
-
 static PetscErrorCode BuildSurface(const LamNode *list, LamScene *scene)
 {
   LamTransportSpec *spec = &scene->process.transport;

@@ -22,8 +22,8 @@ grep -q '"reason"' out.txt && fail "a reason for a converged state"
 sed -n 1p out.txt | grep -q '"state": 1, .*"turgor": 0.02[,0]' || fail "the first state is wrong: $(sed -n 1p out.txt)"
 sed -n 3p out.txt | grep -q '"state": 3, .*"turgor": 0.01[,0]' || fail "the last state is wrong: $(sed -n 3p out.txt)"
 expect 0 "$lamella" rve scene.yaml --json --tangent
-tr ',' '\n' <out.txt | grep -c null >nulls.txt
-[ "$(cat nulls.txt)" -ge 168 ] || fail "the tangent's unknown entries are not null: $(cat nulls.txt) of 3 x 56"
+/usr/bin/python3 -c 'import json, sys
+for line in sys.stdin: assert None not in json.loads(line)["tangent"]' <out.txt || fail "entries of the tangent are not known"
 grep -qiE '\b(nan|inf)' out.txt && fail "numbers that are not finite"
 
 # the file
