@@ -163,7 +163,7 @@ PetscErrorCode LamBodyTransportCreate(LamBody body)
     transport->has_membrane[body->cells_path] = PETSC_TRUE;
     body->exchange = spec->cell_to_cell / (reach * reach);
   }
-  body->isolated = (PetscBool)!LamTransportHasPotentials(scene);
+  body->isolated = (PetscBool)!transport->count;
   if (transport->count) PetscCall(LamMacroSetTransport(body->macro, transport));
   PetscFunctionReturn(0);
 }
