@@ -348,7 +348,7 @@ static PetscBool ReadF33(json_t *object, LamGrid g)
     return PETSC_FALSE;
   g->z_cells = (PetscInt)PetscMin(PetscMax(cells, 0), LAM_MOST_Z_CELLS + 1);
   return (PetscBool)(g->z_step > 0 && g->z_cells >= LEAST_Z_CELLS && g->z_cells <= LAM_MOST_Z_CELLS &&
-                     fabs(g->z_min) < LAM_GRID_REACH);
+                     isfinite(LamGridF33(g, (int)g->z_cells + 1)) && LamGridF33(g, 1) > 0);
 }
 
 /* Whether the free cell's suctions and cohesion are those of the grid. */

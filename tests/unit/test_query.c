@@ -42,6 +42,25 @@ QUERY_TEST(stress_and_tangent_are_derivatives_of_the_answered_energy, MakeFilled
   AssertDerivatives(db, probe, 1e-8);
 }
 
+/* Records that are said to be of another F33: a potential of its own. */
+QUERY_TEST(records_blend_with_those_of_their_F33, MakeFilled())
+{
+  LamLoad load;
+
+  for (int n = 0; n < 12; n++) {
+    const LamLoad near = Load(1.06 + 0.01 * (n % 3), 0.05 + 0.01 * (n % 2), 0.01, 1.03 + 0.01 * (n / 4), 0.15);
+    LamResponse record = Exact(&near);
+
+    record.load.F[8] = 1.1;
+    CHECK(LamDatabaseAdd(db, 1, NULL, &record));
+  }
+  load = Load(1.067, 0.056, 0.01, 1.041, 0.16);
+  load.F[8] = 1.1;
+  AssertDerivatives(db, load, 2e-7); /* the weights are steep between near records */
+  load.F[8] = 1.09;
+  AssertStatus(db, load, LAM_OUT_OF_REACH);
+}
+
 /* All images of the record fall on each other, and those of the question lie around it. */
 QUERY_TEST(derivatives_are_exact_beside_an_isotropic_record, MakeFilled())
 {
