@@ -126,6 +126,24 @@ MACRO_TEST(CoulombHoldsAtEachNode)
   for (PetscInt k = 0; k < fixture->step_count; k++) assert_int_equal(fixture->steps[k].cutbacks, 0);
 }
 
+/* Also of sealed cells, where the forces of nodes err much before the iteration is near, without cutbacks. */
+MACRO_TEST(SealedCylinderRubs)
+{
+  PetscInt count[2];
+
+  FixtureScene(fixture, 5, 4, 0.8, 4);
+  fixture->scene.macro.symmetry = LAM_AXISYMMETRIC;
+  FixtureSeal(fixture, 0.1, 2e3);
+  FixtureAdd(fixture, "bottom", LAM_BOUNDARY_SYMMETRY);
+  AddPlate(fixture, "top", 0, -0.2, 0.2);
+  FixtureRun(fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
+  Count(fixture->macro, count);
+  assert_true(count[1] > 3);
+  const PetscReal *force = FixtureReaction(fixture, "top");
+  assert_true(force[0] < 0 && force[0] > 0.2 * force[1] - 1e-8);
+  for (PetscInt k = 0; k < fixture->step_count; k++) assert_int_equal(fixture->steps[k].cutbacks, 0);
+}
+
 /* The force of a compressed cylinder lies between those without friction and stuck, and rises with the coefficient. */
 TEST(FrictionStiffens)
 {
