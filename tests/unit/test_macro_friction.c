@@ -46,7 +46,7 @@ TEST(TangentWithFriction)
     fixture.scene.macro.boundary[1].friction = friction;
     AddPlate(&fixture, "right", -0.08, 0.02, friction);
     FixtureSetUp(&fixture, PETSC_COMM_WORLD);
-    CheckTangent(&fixture, 0.02);
+    CheckTangent(&fixture, 0.01);
     Count(fixture.macro, count);
     for (int i = 0; i < 2; i++) all[i] += count[i];
   }
