@@ -73,7 +73,7 @@ static PetscErrorCode ArchiveReference(LamMacro macro, LamArchive archive, const
   PetscFunctionReturn(0);
 }
 
-/* Nodes in contact, as a vector of 0 and 1. */
+/* Nodes in contact, as a vector of 0 and 1, and of the signs of their friction. */
 static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
 {
   PetscScalar *touches;
@@ -82,13 +82,19 @@ static PetscErrorCode ArchiveTouch(LamMacro macro, LamArchive archive)
   if (!macro->obstacle_count) PetscFunctionReturn(0);
   PetscCall(VecZeroEntries(macro->external));
   PetscCall(VecGetArray(macro->external, &touches));
-  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
-    touches[macro->obstacle_nodes[k].local] = macro->obstacle_nodes[k].accepted;
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+    const LamObstacleNode *node = &macro->obstacle_nodes[k];
+    touches[node->local] = node->accepted;
+    touches[node->local + 1] = (PetscScalar)node->accepted_slip;
+  }
   PetscCall(VecRestoreArray(macro->external, &touches));
   PetscCall(LamMacroArchiveVec(macro, archive, "touch", macro->external));
   PetscCall(VecGetArray(macro->external, &touches));
-  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
-    macro->obstacle_nodes[k].accepted = (PetscBool)(PetscRealPart(touches[macro->obstacle_nodes[k].local]) > 0.5);
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
+    LamObstacleNode *node = &macro->obstacle_nodes[k];
+    node->accepted = (PetscBool)(PetscRealPart(touches[node->local]) > 0.5);
+    node->accepted_slip = (PetscInt)PetscRealPart(touches[node->local + 1]);
+  }
   PetscCall(VecRestoreArray(macro->external, &touches));
   PetscFunctionReturn(0);
 }

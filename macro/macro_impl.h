@@ -155,6 +155,7 @@ typedef struct {
   PetscInt constraint;    /* its prescribed direction; -1: none */
   PetscBool active;       /* in contact in the last residual */
   PetscBool accepted;     /* in contact in the last converged state */
+  PetscInt slip, accepted_slip; /* sign of the force of friction where it slips, likewise; 0: it does not */
 } LamObstacleNode;
 
 /* The nearest obstacle of a node. */
@@ -312,6 +313,8 @@ struct LamMacro_s {
   PetscBool fresh;           /* no residual evaluated yet in this series of iterations */
   PetscInt pulled, released; /* nodes: in contact though pulled, most of all; to leave at the next residual; -1 */
   PetscBool any_pulled;      /* on any rank */
+  PetscBool any_regrip, regrips; /* nodes of a sealed body are to begin to slip or stick, on any rank; at the next
+                                    residual they do */
   PetscReal violation; /* largest penetration or distance of nodes violating the contact conditions, last residual */
   PetscInt row_count;
   LamNodeRows *rows; /* of the last residual */

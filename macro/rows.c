@@ -16,20 +16,21 @@
   and t normal to n, d(t . r) = t . dr - kappa lambda t . dx.
 
   Friction: r = lambda n + tau t, and with the slip s along t since the last converged state Coulomb's law is
-  |tau| <= mu lambda, and where s is not 0, tau = -mu lambda s/|s|. A node sticks if |tau - s| < mu lambda (stresses in
-  C1 + C2, lengths in macro lengths): its equation along t is s = 0. Else it slips with the sign sigma of tau - s:
-  tau - sigma mu lambda = 0. Newton's method on this is again the one of active sets. With slid the motion of the node
-  against the obstacle, s = t . slid, and dt = -kappa n (t . dx),
-    ds = (1 - kappa n . slid) t . dx,  d(tau - sigma mu lambda) = (t - sigma mu n) . dr
+  |tau| <= mu lambda, and where s is not 0, tau = -mu lambda s/|s|. A node that sticks has the equation s = 0; it slips
+  as soon as |tau| > mu lambda. One that slips, with the sign sigma of tau, has the equation tau - sigma mu lambda = 0,
+  and sticks as soon as sigma s > 0. Nodes go on as they did in the last converged state, new ones stick. With slid the
+  motion of the node against the obstacle, s = t . slid, and dt = -kappa n (t . dx), ds = (1 - kappa n . slid) t . dx,
+  d(tau - sigma mu lambda) = (t - sigma mu n) . dr
                                                                   - kappa (lambda + sigma mu tau) t . dx.
   Of a node with a prescribed direction that and the gap say where it is: friction changes nothing.
 
   In a sealed body, which hardly changes its volume, this set may alternate for ever: a node that leaves moves its
   neighbours. There nodes enter at once, but stay, also where the obstacle would have to pull them, until the iteration
-  has converged. Then the node that is pulled most leaves, and so on until none is pulled.
+  has converged. Then the node that is pulled most leaves, and so on until none is pulled. Likewise nodes begin to slip
+  or to stick there once the iteration has converged, all at once: before, lambda errs much.
 
-  References: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888; Hueeber, Stadler & Wohlmuth, SIAM J. Sci.
-  Comput. 30 (2008) 572-596 (friction).
+  References: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2003) 865-888; Wriggers, Computational Contact Mechanics,
+  ch. 9 (friction).
 */
 #include "macro_impl.h"
 
@@ -111,23 +112,35 @@ static PetscReal Along(const PetscReal a[2], const PetscReal b[2])
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/* Sets row i of a node with friction that the obstacle presses with lambda; r: unbalanced force. At the start of an
-   increment nodes that have slipped, whose tau is the limit but for rounding, go on to do so. */
-static void FrictionRow(const LamTouch *touch, PetscInt i, PetscReal lambda, const PetscReal r[2], PetscBool fresh,
-                        LamNodeRows *rows)
+/* The sign of tau of a node that slips, 0: it sticks; `slip`: of the state before. */
+static PetscInt Slips(const LamTouch *touch, PetscInt slip, PetscReal s, PetscReal tau, PetscReal lambda)
 {
-  const PetscReal rounding = fresh ? 1e-6 : 0, limit = touch->friction * lambda, *n = touch->normal;
-  PetscReal t[2], slip, tau;
+  if (slip) return (PetscReal)slip * s > 0 ? 0 : slip;
+  if (PetscIsInfReal(touch->friction) || PetscAbsReal(tau) <= touch->friction * lambda) return 0;
+  return tau > 0 ? 1 : -1;
+}
+
+/* Sets row i of a node with friction that the obstacle presses with lambda; r: unbalanced force. */
+static void FrictionRow(LamMacro macro, const LamTouch *touch, PetscInt i, PetscReal lambda, const PetscReal r[2],
+                        LamObstacleNode *node, LamNodeRows *rows)
+{
+  const PetscReal *n = touch->normal;
+  PetscReal t[2], s, tau;
 
   TangentOf(i, n, t);
-  slip = Along(t, touch->slid);
+  s = Along(t, touch->slid);
   tau = Along(t, r);
-  if (PetscAbsReal(tau - slip) < limit * (1 - rounding)) { /* also where it is stuck: the limit is infinite */
+  const PetscInt slip = Slips(touch, node->slip, s, tau, lambda);
+  if (!macro->seal || macro->regrips)
+    node->slip = slip;
+  else if (slip != node->slip)
+    macro->any_regrip = PETSC_TRUE;
+  if (!node->slip) {
     const PetscReal turned = 1 - touch->curvature * Along(n, touch->slid), turning[2] = {turned * t[0], turned * t[1]};
-    PrescribeRow(rows, i, turning, slip);
+    PrescribeRow(rows, i, turning, s);
     return;
   }
-  const PetscReal share = tau < slip ? -touch->friction : touch->friction;
+  const PetscReal share = (PetscReal)node->slip * touch->friction;
   for (PetscInt j = 0; j < 2; j++) {
     rows->combine[2 * i + j] = t[j] - share * n[j];
     rows->add[2 * i + j] = -touch->curvature * (lambda + share * tau) * t[j];
@@ -135,16 +148,16 @@ static void FrictionRow(const LamTouch *touch, PetscInt i, PetscReal lambda, con
 }
 
 /* Rows of a node in contact without prescribed direction, under the force lambda; r: unbalanced forces. */
-static LamNodeRows TouchRows(const LamTouch *touch, PetscInt local, PetscReal lambda, const PetscScalar r[],
-                             PetscBool fresh)
+static LamNodeRows TouchRows(LamMacro macro, const LamTouch *touch, PetscReal lambda, const PetscScalar r[],
+                             LamObstacleNode *node)
 {
-  const PetscReal force[2] = {PetscRealPart(r[local]), PetscRealPart(r[local + 1])};
+  const PetscReal force[2] = {PetscRealPart(r[node->local]), PetscRealPart(r[node->local + 1])};
   const PetscInt i = Largest(touch->normal);
-  LamNodeRows rows = {.local = local};
+  LamNodeRows rows = {.local = node->local};
 
   PrescribeRow(&rows, i, touch->normal, touch->gap);
-  if (touch->friction > 0 && lambda > 0)
-    FrictionRow(touch, 1 - i, lambda, force, fresh, &rows);
+  if (touch->friction > 0)
+    FrictionRow(macro, touch, 1 - i, lambda, force, node, &rows);
   else
     TangentRow(&rows, 1 - i, touch->normal, touch->curvature * lambda);
   return rows;
@@ -199,6 +212,7 @@ static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], co
   PetscFunctionBeginUser;
   macro->violation = 0;
   macro->pulled = -1;
+  macro->any_regrip = PETSC_FALSE;
   PetscCall(VecGetArrayRead(macro->u, &before));
   for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     LamObstacleNode *node = &macro->obstacle_nodes[k];
@@ -207,16 +221,19 @@ static PetscErrorCode FillObstacleRows(LamMacro macro, const PetscScalar u[], co
     const PetscReal lambda = TouchForce(&touch, held ? held->normal : NULL, &r[node->local]);
     const PetscBool active = IsInContact(macro, k, lambda - touch.gap, &most_pulled);
 
-    if (active && !held) macro->rows[macro->row_count++] = TouchRows(&touch, node->local, lambda, r, macro->fresh);
+    if (macro->fresh) node->slip = node->accepted_slip;
+    if (!active) node->slip = 0;
+    if (active && !held) macro->rows[macro->row_count++] = TouchRows(macro, &touch, lambda, r, node);
     if (active && held) PrescribeRow(&macro->rows[held->row], 1 - Largest(held->normal), touch.normal, touch.gap);
     node->active = active;
     macro->violation = PetscMax(macro->violation, active ? PetscAbsReal(touch.gap) : -touch.gap);
   }
   PetscCall(VecRestoreArrayRead(macro->u, &before));
-  macro->fresh = PETSC_FALSE;
+  macro->fresh = macro->regrips = PETSC_FALSE;
   macro->released = -1;
   if (!macro->obstacle_count) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->violation, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &macro->any_regrip, 1, MPIU_BOOL, MPI_LOR, macro->comm));
   PetscCall(FindPulled(macro, most_pulled));
   PetscFunctionReturn(0);
 }

@@ -100,8 +100,9 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   else if (fnorm <= tolerance * scale)
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   if (*reason <= 0) PetscFunctionReturn(0);
-  if (macro->obstacle_count && macro->any_pulled) {
+  if (macro->obstacle_count && (macro->any_pulled || macro->any_regrip)) {
     macro->released = macro->pulled;
+    macro->regrips = (PetscBool)!macro->any_pulled;
     *reason = SNES_CONVERGED_ITERATING;
     PetscFunctionReturn(0);
   }
@@ -169,8 +170,10 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   PetscCall(PetscArraycpy(macro->accepted, macro->now, macro->point_count));
   PetscCall(LamMacroAcceptPressures(macro));
   for (PetscInt b = 0; b < macro->border_count; b++) macro->borders[b].accepted = macro->borders[b].now;
-  for (PetscInt k = 0; k < macro->obstacle_node_count; k++)
+  for (PetscInt k = 0; k < macro->obstacle_node_count; k++) {
     macro->obstacle_nodes[k].accepted = macro->obstacle_nodes[k].active;
+    macro->obstacle_nodes[k].accepted_slip = macro->obstacle_nodes[k].slip;
+  }
   LamMacroObstaclesAccept(macro);
   PetscCall(LamResponderAccept(macro->responder));
   PetscFunctionReturn(0);

@@ -116,8 +116,8 @@ static void PrintReadings(const LamTearCurve *curve, Units units)
   if (isfinite(r.share)) printf(", %.3g %% of it released in jumps", (double)(100 * r.share));
   printf("; work of the traction %.4g J/m^2\n", (double)(last->work * units.energy));
   if (last->burst > 0 || last->walls > 0)
-    printf("  walls have spent %.4g J/m^2 of it; %.3g %% of the cells have burst\n", (double)(last->walls * units.energy),
-           (double)(100 * last->burst));
+    printf("  walls have spent %.4g J/m^2 of it; %.3g %% of the cells have burst\n",
+           (double)(last->walls * units.energy), (double)(100 * last->burst));
   printf("  energy of the lamella in a straight crack %.4g J/m^2\n", (double)(curve->straight * units.energy));
 }
 

@@ -2,9 +2,9 @@
   Zoom into the microstructure: the RVE at chosen material points of the last converged state, written to the results.
 
   The RVE is that of the point's tissue; if several are blended, that of the largest weight. With direct response, and
-  where the point holds a model, it starts from the point's stored state, else from the reference, as the cache's solves do. `difference` in
-  the file is the LamStressError between the stress used by the run and the one found: the error of an interpolated or
-  blended response, or a sign of another branch.
+  where the point holds a model, it starts from the point's stored state, else from the reference, as the cache's solves
+  do. `difference` in the file is the LamStressError between the stress used by the run and the one found: the error of
+  an interpolated or blended response, or a sign of another branch.
 
   In the file, k = 1, 2, ... (docs/reference/files.md): /zoom/<k>/mesh and /zoom/<k>/fields as written by `rve -o`;
   /zoom/place, position, F, turgor, cohesion, P, difference, apothem with a row for each; /zoom/points is written last.

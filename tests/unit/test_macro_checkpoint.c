@@ -101,7 +101,7 @@ static PetscErrorCode SaveMonitor(LamMacro macro, const LamMacroStep *step, Pets
 
 static PetscBool AllLoads; /* beside displacements */
 
-/* In place of the prescribed top: a grip that moves freely upwards, pulled; a plate against the right side. */
+/* In place of the prescribed top: a grip that moves freely upwards, pulled; a plate that rubs the right side. */
 static void PrepareLoads(Fixture *fixture)
 {
   LamBoundary *boundary;
@@ -111,7 +111,10 @@ static void PrepareLoads(Fixture *fixture)
   boundary->given[0] = PETSC_TRUE;
   boundary->displacement[0] = 0.2;
   FixtureAdd(fixture, "top", LAM_BOUNDARY_TRACTION)->traction[1] = 0.1;
-  FixtureAdd(fixture, "right", LAM_BOUNDARY_PLATE)->displacement[0] = -0.1;
+  boundary = FixtureAdd(fixture, "right", LAM_BOUNDARY_PLATE);
+  boundary->displacement[0] = -0.1;
+  boundary->displacement[1] = 0.1;
+  boundary->friction = 0.2;
   strcpy(fixture->scene.macro.control.on, "left");
   fixture->scene.macro.control.component = 1;
   fixture->scene.macro.control.displacement = 0.05;

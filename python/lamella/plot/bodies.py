@@ -69,7 +69,7 @@ ROUNDING = 1e-6  #: of the largest reaction: a smaller one, as of a roller's fre
 
 
 class Reactions:
-    """What the file has of each step: load factor, reactions [step, side, 2] in N/mm, and the displacement of the
+    """What the file has of each step: load factor, reactions [step, side, 2] in `unit`, and the displacement of the
     loaded side in mm, if there is one."""
 
     def __init__(self, source, steps):
@@ -83,6 +83,7 @@ class Reactions:
             self.certified = read("certified", 2 * n).reshape(steps, n, 2)
             self.margin = read("certified_margin", 2 * n).reshape(steps, n, 2)
         self.summary = source.object("macro/summary")
+        self.unit = self.summary.get("force_unit", "N/mm")  # absent in older files
         loaded = self.summary.get("loaded") or {}
         self.loaded = loaded.get("boundary")
         if self.loaded in self.sides:
@@ -123,7 +124,7 @@ class Reactions:
                 axes.errorbar(x, self.certified[:, s, i], self.margin[:, s, i], fmt="none", ecolor=DARK, elinewidth=0.9,
                               capsize=3)
         axes.set(xlabel="load factor" if self.x is None else f"displacement $u$ of {self.loaded} (mm)",
-                 ylabel="reaction per thickness $R$ (N/mm)")
+                 ylabel="reaction $R$ (N)" if self.unit == "N" else "reaction per thickness $R$ (N/mm)")
         for name in ("separation", "rupture"):
             at = (self.summary.get(name) or {}).get("load_factor" if self.x is None else "displacement")
             if isinstance(at, (int, float)):
@@ -170,9 +171,12 @@ class Body:
         group, n = f"macro/step/{self.steps[row]}", len(self.mesh.elements)
         self.x = self.nodes + self.source.points(f"{group}/u", len(self.nodes))
         self.values = self.evaluate(lambda name, columns: self.source.array(f"{group}/{name}", n, columns))
-        self.obstacles = np.empty((0, 5))
+        self.obstacles = np.empty((0, 6))
         if self.source.has(f"{group}/obstacles"):
-            self.obstacles = self.source.array(f"{group}/obstacles", None, 5, finite=True)
+            older = self.source.array(f"{group}/obstacles").shape[-1] == 5  # without the radius of the edge
+            self.obstacles = self.source.array(f"{group}/obstacles", None, 5 if older else 6, finite=True)
+            if older:
+                self.obstacles = self.obstacles[:, [0, 1, 2, 3, 4, 4]]
         self.at = row
         return self
 
@@ -182,9 +186,9 @@ class Body:
         both = np.vstack([self.x, self.nodes])
         low, high = both.min(axis=0), both.max(axis=0)
         size, points = (self.nodes.max(axis=0) - self.nodes.min(axis=0)).max(), [low, high]
-        for *x, n1, n2, radius in self.obstacles:
+        for *x, n1, n2, radius, edge in self.obstacles:
             x, n, middle = np.array(x), np.array([n1, n2]), (np.min(points, axis=0) + np.max(points, axis=0)) / 2
-            points.append(x + n * (radius - min(2 * radius, INDENTER_SHARE * size)) if radius > 0 else
+            points.append(x + n * (edge - min(2 * radius, INDENTER_SHARE * size)) if radius > 0 else
                           middle - n * ((middle - x) @ n + PLATE_SHARE * size))
         return np.min(points, axis=0), np.max(points, axis=0)
 
@@ -239,12 +243,19 @@ class Body:
 
 def _obstacles(view, obstacles):
     far = 4 * np.sum(view.high - view.low)
-    for *x, n1, n2, radius in obstacles:
+    for *x, n1, n2, radius, edge in obstacles:
         style = {"facecolor": RIGID, "edgecolor": DARK, "linewidth": 0.6, "zorder": 0.8}
+        x, n = np.array(x), np.array([n1, n2])
+        if radius > edge:  # the rounded end of a shaft
+            angle, aside = np.linspace(0, np.pi / 2, 24), np.array([-n2, n1])
+            corner = np.outer(radius - edge + edge * np.sin(angle), aside) + np.outer(edge * np.cos(angle), n)
+            across = corner - 2 * np.outer(corner @ aside, aside)
+            view.axes.add_artist(Polygon(x + np.vstack([corner, corner[-1:] - far * n, across[-1:] - far * n,
+                                                        across[::-1]]), **style))
+            continue
         if radius > 0:
             view.axes.add_artist(Circle(x, radius, **style))
             continue
-        x, n = np.array(x), np.array([n1, n2])
         along, behind = far * np.array([-n2, n1]), RIGID_WIDTH / view.scale * n
         view.axes.add_artist(Polygon([x - along, x + along, x + along - behind, x - along - behind], **style))
 
@@ -312,7 +323,7 @@ def _time_charts(body):
     lost = t.column("plasmolysed")
     if t.is_known(lost) and t.varies(lost):
         damage.append((lost, "without turgor"))
-    return [("reaction $R$ (N/mm)", forces), ("turgor $p$ (MPa)", turgor), ("share of the start", shares),
+    return [(f"reaction $R$ ({body.reactions.unit})", forces), ("turgor $p$ (MPa)", turgor), ("share of the start", shares),
             (label, damage)]
 
 
