@@ -101,6 +101,8 @@ static inline PetscBool LamHasHistory(const LamMicrostructure *micro)
 {
   return (PetscBool)(micro->interface == LAM_INTERFACE_LAMELLA || LamWallsRelax(micro));
 }
+/* Whether fibres of any wall leave the section of the cells. */
+LAM_EXPORT PetscBool LamWallsTilt(const LamMicrostructure *micro);
 /* Whether walls can tear. */
 static inline PetscBool LamWallsTear(const LamMicrostructure *micro)
 {

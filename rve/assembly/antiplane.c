@@ -1,8 +1,8 @@
 #include "antiplane.h"
 
-#define MOST_ITERATIONS 300
-#define SOLVED 1e-13 /* of the right-hand side */
-#define HOLDS 1e-12  /* of the largest diagonal entry: a lamella less stiff holds nothing */
+#define MOST_ITERATIONS 300 /* of conjugate gradients; ten are usual */
+#define SOLVED 1e-13        /* of the right-hand side */
+#define HOLDS 1e-12         /* of the largest diagonal entry: a lamella less stiff holds nothing */
 
 static PetscInt Edges(LamRVE rve)
 {
@@ -208,7 +208,8 @@ static void HoldFree(LamRVE rve, LamAntiplane t)
   if (t->n > t->classes - 1) t->values[t->row[t->n - 1]] = largest;
 }
 
-static void Scatter3(LamAntiplane t)
+/* Sums the pieces. */
+static void Sum(LamAntiplane t)
 {
   for (PetscInt c = 0; c < t->classes; ++c) t->f[c] = 0.0;
   for (PetscInt p = 0; p < t->row[t->n]; ++p) t->values[p] = 0.0;
@@ -245,7 +246,7 @@ PetscErrorCode LamAntiplaneAssemble(LamRVE rve, const LamLoad *load, PetscBool *
                     (const PetscReal(*)[2])u, load->F[8], &rve->stress[k], &t->piece[k].d);
   }
   if (rve->layer) LamLayerVisitPoints(rve, load->F, rve->y, AddBond, rve);
-  Scatter3(t);
+  Sum(t);
   HoldFree(rve, t);
   PetscCall(LamFactorNumeric(t->factor, &negative, ok));
   if (negative > 0) *ok = PETSC_FALSE;
@@ -390,6 +391,7 @@ PetscErrorCode LamAntiplaneSolve(LamRVE rve, const PetscReal rhs[], PetscReal z[
   PetscCall(Precondition(t, r, better));
   PetscCall(PetscArraycpy(p, better, n));
   rho = first = LamInnerProduct(n, r, better);
+  if (!(first >= 0.0)) *ok = PETSC_FALSE;
   for (PetscInt it = 0; it < MOST_ITERATIONS && rho > SOLVED * SOLVED * first; ++it) {
     PetscReal curvature, alpha, next;
 

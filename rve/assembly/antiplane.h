@@ -11,7 +11,7 @@
 
 #include "rve_impl.h"
 
-/* A direction, or a gradient: components of F in the section and F33, positions [ndof]; then G and z [class]. */
+/* A direction or a gradient in the plane: components of F in the section, F33, positions [ndof]. */
 typedef struct {
   PetscReal F[4], F33;
   const PetscReal *y;
@@ -67,7 +67,7 @@ void LamAntiplaneApply(LamRVE rve, const PetscReal z[], const PetscReal G[2], Pe
   gradients, preconditioned by L_zz. *ok: S is positive definite in the directions met.
 */
 PetscErrorCode LamAntiplaneSolve(LamRVE rve, const PetscReal rhs[], PetscReal z[], PetscBool *ok);
-/* y := K^-1 rhs for the positions of a gradient, others zero; [length] each. */
+/* y := K^-1 rhs for the positions of a gradient, [ndof] each; other right-hand sides are zero. */
 PetscErrorCode LamAntiplaneRelax(LamRVE rve, const PetscReal rhs[], PetscReal y[]);
 
 #endif

@@ -287,8 +287,8 @@ static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c,
 
     PetscCall(LamBondRatesFind(rve, load, columns));
   }
-  if (rve->antiplane) {
-    PetscCall(LamCondenseAxial(rve, load, derivatives ? nq : 0, X, axial));
+  if (rve->antiplane) PetscCall(LamCondenseAxial(rve, load, derivatives ? nq : 0, X, axial));
+  if (rve->antiplane && axial->ok) {
     for (PetscInt q = 0; q < nq; ++q) {
       c->Lq[q] += axial->Lq[q];
       for (PetscInt r = 0; r < nq; ++r) H[q][r] += axial->H[q][r] / rve->mesh.V0;
@@ -419,7 +419,7 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
   for (PetscInt q = 0; q < LAM_F_COUNT; ++q) response->P[LamFComponent[q]] = c.Lq[q] / rve->mesh.V0;
   for (PetscInt l = 0; l < 2 && rve->antiplane; ++l) response->P[6 + l] = axial.Lq[LAM_AXIAL_G + l] / rve->mesh.V0;
   if (derivatives) FillDerivatives(rve, (const PetscReal(*)[NQ])H, response);
-  if (derivatives && rve->antiplane)
+  if (derivatives && rve->antiplane && axial.ok) /* else the plane holds what would give way: entries stay unknown */
     FillAxial(rve, load, &axial, response);
   else if (rve->antiplane)
     LamSectionCompleteStress(load->F, response->P);

@@ -90,9 +90,7 @@ PetscErrorCode LamFindCollapsedLumen(LamRVE rve, const PetscReal y[], PetscInt *
       x[i][0] = position[0];
       x[i][1] = position[1];
     }
-    if (SignedArea(n, (const PetscReal(*)[2])x) <= 0.0 ||
-        CrossesItself(n, (const PetscReal(*)[2])x, apart))
-      *cell = c;
+    if (SignedArea(n, (const PetscReal(*)[2])x) <= 0.0 || CrossesItself(n, (const PetscReal(*)[2])x, apart)) *cell = c;
   }
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);

@@ -36,7 +36,7 @@ PetscErrorCode LamHomogenise(LamRVE rve, const LamLoad *load, LamResponse *respo
 #define LAM_MOST_COLUMNS 8 /* of q: F11 F12 F21 F22 F33, turgor, cohesion, width of the smooth law; then ... */
 #define LAM_AXIAL_G LAM_MOST_COLUMNS /* ... F31, F32 */
 /* What z and G add to L_q and H = d2L/dq2, not divided by V0. ok: the state is stable against displacements along the
-   cells. */
+   cells; else they are 0. */
 typedef struct {
   PetscReal Lq[LAM_MOST_COLUMNS + 2], H[LAM_MOST_COLUMNS + 2][LAM_MOST_COLUMNS + 2];
   PetscBool ok;

@@ -26,7 +26,7 @@ static void FindPlaneColumn(LamRVE rve, PetscInt q, const PetscReal solution[], 
   LamAntiplaneFromPlane(rve, &d, column->r, column->G);
 }
 
-/* That of a component of G; derivative: L_Gq with q in the plane; work [2 ndof]. */
+/* That of a component of G; work [2 ndof]. */
 static PetscErrorCode FindAxialColumn(LamRVE rve, PetscInt l, PetscReal work[], AxialColumn *column)
 {
   const PetscReal G[2] = {l == 0, l == 1};
@@ -61,7 +61,6 @@ PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, co
   const PetscInt n = rve->linear->n, classes = rve->antiplane->classes, count = nq + 2, residual = count;
   AxialColumn column[LAM_MOST_COLUMNS + 3] = {{0}};
   PetscReal *data, *work;
-  PetscBool ok;
 
   PetscFunctionBeginUser;
   *out = (LamAxialDerivatives){0};
@@ -75,9 +74,8 @@ PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, co
     FindPlaneColumn(rve, q, solutions + q * n, work, &column[q]);
   for (PetscInt l = 0; l < 2; ++l) PetscCall(FindAxialColumn(rve, l, work, &column[nq + l]));
   PetscCall(PetscArraycpy(column[residual].r, rve->antiplane->f, classes));
-  PetscCall(SolveColumns(rve, count + 1, column, &ok));
-  out->ok = (PetscBool)(out->ok && ok);
-  for (PetscInt k = 0; k < count; ++k) {
+  if (out->ok) PetscCall(SolveColumns(rve, count + 1, column, &out->ok));
+  for (PetscInt k = 0; k < count && out->ok; ++k) {
     const PetscInt q = k < nq ? k : k - nq + LAM_AXIAL_G;
 
     out->Lq[q] =

@@ -229,6 +229,8 @@ PetscErrorCode LamRVESolveDissipating(LamRVE rve, const LamDissipationPath *path
              "a step of %g of the path and %g faces; both must be positive, the first at most 1", (double)path->most,
              (double)path->faces);
   PetscCheck(state->solved, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONGSTATE, "the state is no solution");
+  PetscCheck(!LamIsOutOfPlane(rve, &path->to, state) && path->to.F[2] == 0.0 && path->to.F[5] == 0.0, PETSC_COMM_SELF,
+             PETSC_ERR_SUP, "displacements along the cells are not under control of what is dissipated");
   PetscCall(LamRVEStateCreate(rve, &before));
   PetscCall(LamRVEStateCopy(state, before));
   PetscCall(LamBeginResponse(rve, &path->to, state, response));

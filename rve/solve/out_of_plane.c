@@ -12,8 +12,8 @@
 #include "antiplane.h"
 #include "solve.h"
 
-#define MOST_ITERATIONS 25
-#define LEAST_STEP (1.0 / 64.0)
+#define MOST_ITERATIONS 25      /* of a load; four to six are usual, and of more a shorter way is better */
+#define LEAST_STEP (1.0 / 64.0) /* of the way to the load, chosen: the section itself is continued in finer steps */
 
 /* Q with the third axis along F e3: the least rotation that brings it there. */
 static void FindFrame(const PetscReal F[9], PetscReal Q[9])
@@ -40,9 +40,10 @@ static void Turn(const PetscReal Q[9], PetscBool back, PetscReal T[9])
   for (PetscInt k = 0; k < 9; ++k) T[k] = product[k];
 }
 
+/* Also an F that is refused later, which leaves no axis. */
 static PetscBool IsSection(const PetscReal F[9])
 {
-  return (PetscBool)(F[2] == 0.0 && F[5] == 0.0 && F[8] > 0.0);
+  return (PetscBool)(F[2] == 0.0 && F[5] == 0.0 && F[8] >= 0.0);
 }
 
 LamLoad LamSectionLoad(const LamLoad *load)
@@ -78,20 +79,13 @@ void LamSectionTurnBack(const LamLoad *load, LamResponse *response)
     response->localisation_mode[i] = Q[i] * column[0] + Q[3 + i] * column[1] + Q[6 + i] * column[2];
 }
 
-static PetscBool HasTiltedFibres(LamRVE rve)
-{
-  for (PetscInt c = 0; c < rve->mesh.cell_count; ++c)
-    if (LamCellWall(&rve->micro, c)->fibre_angle != 0.0) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 PetscBool LamIsOutOfPlane(LamRVE rve, const LamLoad *load, const LamRVEState state)
 {
   PetscBool any = (PetscBool)(load->F[6] != 0.0 || load->F[7] != 0.0);
 
   if (!rve->antiplane) return PETSC_FALSE;
   for (PetscInt c = 0; c < state->axial && !any; ++c) any = (PetscBool)(state->z[c] != 0.0);
-  return (PetscBool)(any || HasTiltedFibres(rve));
+  return (PetscBool)(any || LamWallsTilt(&rve->micro));
 }
 
 /* Sets z and G: of a state, and moved affinely to the G of a load. */
@@ -153,17 +147,17 @@ static PetscErrorCode SolveLoad(LamRVE rve, const LamLoad *load, LamRVEState sta
     if (rve->monitor)
       PetscCall(
           PetscFPrintf(PETSC_COMM_SELF, PETSC_STDERR, "  out of plane %2d  residual %10.3e\n", (int)it, (double)norm));
-    PetscCall(LamAntiplaneSolve(rve, t->f, step, &stable));
+    if (convex) PetscCall(LamAntiplaneSolve(rve, t->f, step, &stable));
     done = (PetscBool)(convex && stable &&
                        (norm <= tolerance || (norm >= 0.5 * before && norm <= LAM_ROUNDING_MARGIN * tolerance)));
-    if (done || !convex) break;
+    if (done || !convex || !stable) break;
     before = norm;
     for (PetscInt c = 1; c < t->classes; ++c) t->z[c] -= step[c];
     LamAntiplaneUse(rve);
   }
   if (response->status == LAM_CONVERGED && !done)
     PetscCall(stable ? LamRefuse(response, LAM_NOT_CONVERGED, "the displacements along the cells did not converge")
-                     : LamRefuse(response, LAM_UNSTABLE, "unstable against displacements along the cells"));
+                     : LamRefuse(response, LAM_NOT_CONVERGED, "no state found that is stable along the cells"));
   PetscCall(PetscFree(step));
   PetscFunctionReturn(0);
 }

@@ -114,7 +114,6 @@ PetscErrorCode LamRVEChangeTissue(LamRVE rve, const LamMicrostructure *micro)
 static PetscErrorCode SetUpArrays(LamRVE rve)
 {
   PetscInt cells, lumens;
-  PetscBool tilted = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(LamMeshCreate(&rve->micro, &rve->mesh));
@@ -137,9 +136,8 @@ static PetscErrorCode SetUpArrays(LamRVE rve)
   rve->length = rve->ndof + lumens;
   PetscCall(PetscCalloc4(rve->length, &rve->y, rve->length, &rve->step, rve->length, &rve->trial, rve->length,
                          &rve->residual));
-  for (PetscInt c = 0; c < cells; ++c)
-    if (LamCellWall(&rve->micro, c)->fibre_angle != 0.0) rve->out_of_plane = tilted = PETSC_TRUE;
-  PetscCheck(!tilted || !LamWallsRelax(&rve->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+  if (LamWallsTilt(&rve->micro)) rve->out_of_plane = PETSC_TRUE;
+  PetscCheck(!LamWallsTilt(&rve->micro) || !LamWallsRelax(&rve->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "walls with memory have no fibres that leave the section: leave `relaxation` or `fibre_angle` out");
   if (rve->out_of_plane) PetscCall(LamAntiplaneCreate(rve, &rve->antiplane));
   PetscCall(PetscMalloc3(lumens, &rve->seal.water, cells, &rve->seal.area, cells, &rve->seal.factor));

@@ -209,6 +209,14 @@ PetscErrorCode LamMicrostructureDestroy(LamMicrostructure *micro)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamWallsTilt(const LamMicrostructure *micro)
+{
+  if (!micro->cell) return (PetscBool)(micro->wall.fibre_angle != 0.0);
+  for (PetscInt c = 0; c < micro->cells[0] * micro->cells[1]; c++)
+    if (micro->cell[c].wall.fibre_angle != 0.0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscBool AreEqual(PetscReal a, PetscReal b, PetscReal tolerance)
 {
   return (PetscBool)(fabs(a - b) <= tolerance * fabs(b));

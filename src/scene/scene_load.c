@@ -286,8 +286,8 @@ static PetscErrorCode BuildDissipation(const LamNode *entry, const Target *targe
                     "needs law: lamella, whose energy of fracture is dissipated; leave it out, or write that law");
   LamSceneCheckName(!LamWallsTear(&scene->micro), node,
                     "does not go with strength.wall_fracture_energy: cells burst in jumps; leave one of them out");
-  LamSceneCheckName(!HasShear33(target->F->value.number), node,
-                    "does not go with out-of-plane shear; leave one of them out");
+  LamSceneCheckName(!HasShear33(target->F->value.number) && !LamWallsTilt(&scene->micro), node,
+                    "does not go with out-of-plane shear or rve.wall.fibre_angle; leave one of them out");
   LamSceneCheckName(!LamWallsRelax(&scene->micro), node,
                     "does not go with rve.wall.relaxation: when its states are reached is not known before; leave one "
                     "of them out");

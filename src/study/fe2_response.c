@@ -98,6 +98,10 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   LamMeshTrial trial;
 
   PetscFunctionBeginUser;
+  PetscCheck(
+      !models || !LamWallsTilt(&tissue->scene.micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+      "%s: rve.wall.fibre_angle: models of a lamella are those of fibres in the section; choose --response direct",
+      run->scene_path);
   if (run->response == LAM_FE2_DATABASE)
     PetscCall(
         LamRefuseHistory(run->scene_path, &tissue->scene.micro, "a table",

@@ -339,6 +339,9 @@ static PetscErrorCode CheckScene(const LamScene *scene)
              scene->path, LamInterfaceLawNames[micro->interface]);
   PetscCheck(!LamWallsRelax(micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.wall.relaxation: the law of a layer is one without time; leave it out", scene->path);
+  PetscCheck(!LamWallsTilt(micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.fibre_angle: the law of a layer is that of fibres in the section; leave it out",
+             scene->path);
   PetscCheck(!micro->is_patch, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.patch: a block of cells between grips is no layer that goes on to both sides; write rve.cells",
              scene->path);

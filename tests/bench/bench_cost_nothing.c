@@ -21,7 +21,7 @@ typedef struct {
   LamMicrostructure micro;
   LamLoad load;
   LamWanted wanted;
-  PetscBool bare, sealable;
+  PetscBool bare, sealable, out_of_plane;
 } Problem;
 
 typedef struct {
@@ -66,6 +66,7 @@ static PetscErrorCode Create(Runner *r)
     PetscCall(LamRVECreate(PETSC_COMM_SELF, &r->rve));
     PetscCall(LamRVESetMicrostructure(r->rve, &p->micro));
     PetscCall(LamRVESetSealable(r->rve, p->sealable));
+    PetscCall(LamRVESetOutOfPlane(r->rve, p->out_of_plane));
     PetscCall(LamRVESetWanted(r->rve, p->wanted));
     PetscCall(LamRVESetUp(r->rve));
     PetscCall(LamRVEStateCreate(r->rve, &r->state));
@@ -197,6 +198,11 @@ static PetscErrorCode CompareBonded(PetscInt along, PetscInt through)
   other = NewProblem("with memory, at once", &micro, &dry);
   other.micro.relaxation = (LamRelaxation){.terms = 1, .share = {0.5}, .time = {1}};
   PetscCall(Compare("memory of the walls", &off, &other));
+
+  off = NewProblem("tangent in the plane", &micro, &dry);
+  other = NewProblem("whole tangent", &micro, &dry);
+  other.out_of_plane = PETSC_TRUE;
+  PetscCall(Compare("tangent out of the plane", &off, &other));
 
   off = NewProblem("pressures prescribed", &micro, &turgid);
   other = NewProblem("room for pressures that are unknown", &micro, &turgid);

@@ -324,3 +324,75 @@ TEST(ThinWalledPrisms)
   CHECK(LamRVESolveMixed(rve, &load, &free, point, &r));
   assert_near(r.P[8] / 1e-4 / (2.0 / sqrt(3) * thin * E), 1.0, 0.02);
 }
+
+/* Sealed lumens: their pressures are unknowns beside z. */
+TEST(SealedAtAnyF)
+{
+  const LamMicrostructure micro = TiltedTissue();
+  OWNED(LamRVE, LamRVEDestroy) rve = NewPrism(&micro, PETSC_TRUE);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
+  LamLoad load = Load((const double[9]){1, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
+  LamResponse r;
+  double water;
+
+  CHECK(LamRVESolve(rve, &load, point, &r));
+  CHECK(LamRVEGetLumens(rve, point, &water));
+  CHECK(LamRVESeal(rve, 100.0, &water));
+  load = Load(any, 0);
+  CheckDifferences(rve, point, &load, 1e-7);
+}
+
+/* Fibres that are dispersed and stiffen; a period of several cells; a patch, whose grips hold z. */
+TEST(OtherTissueAtAnyF)
+{
+  LamMicrostructure micro = TiltedTissue();
+
+  micro.wall.law = LAM_WALL_FIBRE_EXPONENTIAL;
+  micro.wall.C4 = 0;
+  micro.wall.k1 = 2;
+  micro.wall.k2 = 3;
+  micro.wall.dispersion = 0.1;
+  CheckTissue(&micro, any, 0, 1e-7);
+  micro = ContactTissue(4, 1);
+  micro.cells[0] = 2;
+  micro.cells[1] = 2;
+  micro.is_patch = PETSC_TRUE;
+  micro.sides = LAM_SIDES_AFFINE;
+  CheckTissue(&micro, any, 0.02, 1e-7);
+}
+
+/* Fibres that are pressed beyond C4 (1 - I4) > C1 + C2 give way along the cells where the plane does not hold them:
+   then the tangent has no entry that is wrong. */
+TEST(FibresThatGiveWayAlongTheCells)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  OWNED(LamRVE, LamRVEDestroy) rve = NewPrism(&micro, PETSC_FALSE);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
+  const LamLoad load = {.F = {0.9, 0, 0, 0, 0.9, 0, 0, 0, 1}};
+  LamResponse r;
+
+  CHECK(LamRVESolve(rve, &load, point, &r));
+  assert_int_equal(r.status, LAM_CONVERGED);
+  for (int k = 0; k < 81; k++) {
+    const int i = k / 9, j = k % 9, plane[9] = {1, 1, 0, 1, 1, 0, 0, 0, 1};
+
+    assert_true(isfinite(r.tangent[k]) == (plane[i] && plane[j]));
+  }
+}
+
+TEST(NoAxisIsNoDeformation)
+{
+  const LamMicrostructure micro = DefaultTissue();
+  OWNED(LamRVE, LamRVEDestroy) rve = NewPrism(&micro, PETSC_FALSE);
+  OWNED(LamRVEState, LamRVEStateDestroy) point = NewState(rve);
+  const double bad[2][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 0}, {1, 0, 1, 0, 1, 0, 1, 0, 0.5}};
+
+  for (int k = 0; k < 2; k++) {
+    const LamLoad load = Load(bad[k], 0);
+    LamResponse r;
+
+    CHECK(LamRVESolve(rve, &load, point, &r));
+    assert_int_equal(r.status, LAM_INVALID_F);
+    assert_non_null(strstr(r.reason, "inside out"));
+  }
+}
