@@ -18,7 +18,7 @@ static const LamKey sample_keys[] = {
     {STRESS("sample.turgor.max"), INTO(LamSample, turgor_max), REQUIRED, .example = "0.05 MPa",
      .help = "Largest; not below `min`."},
     {MAP("sample.F33"), .default_words = "1 alone: plane strain", .example = "{min: 0.8, max: 1.2}",
-     .help = "Stretch along the cells' axis, for axisymmetric bodies."},
+     .help = "Stretch along the cells' axis, as that around the axis of an axisymmetric body."},
     {REAL("sample.F33.min"), INTO(LamSample, F33_min), REQUIRED, FROM(0.2), TO(5), .example = "0.8",
      .help = "Smallest."},
     {REAL("sample.F33.max"), INTO(LamSample, F33_max), REQUIRED, FROM(0.2), TO(5), .example = "1.2",

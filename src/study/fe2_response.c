@@ -125,8 +125,8 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   PetscFunctionBeginUser;
   PetscCheck(run->response == LAM_FE2_DIRECT || run->scene->macro.symmetry != LAM_AXISYMMETRIC, PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT,
-             "%s: macro.symmetry: axisymmetric: databases and models of material points know F33 = 1 alone, which such "
-             "a body does not keep; choose --response direct",
+             "%s: macro.symmetry: axisymmetric: databases and models of material points do not respond for such a body, "
+             "whose F33 varies; choose --response direct",
              run->scene_path);
   PetscCall(LamFE2TissuesCreate(run->comm, &run->reporter, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));

@@ -191,6 +191,22 @@ static void AddSome(AnalyticTable *t, const int i[3], int j, uint64_t *seed)
     if (!LamPlaceIsFloating(t->grid, i) && RandomReal(seed, 0, 1) < 0.75) AddKey(t, KeyAt(t, i, j, z));
 }
 
+PetscBool Answers(const AnalyticTable *t, const LamLoad *load, LamResponse *r)
+{
+  *r = Ask(t, load);
+  return (PetscBool)(r->status == LAM_CONVERGED);
+}
+
+void AnswerPair(const AnalyticTable *t, const LamLoad *load, size_t offset, double h, LamResponse pair[2])
+{
+  for (int side = 0; side < 2; side++) {
+    LamLoad moved = *load;
+
+    *(PetscReal *)((char *)&moved + offset) += side ? h : -h;
+    assert_true(Answers(t, &moved, &pair[side]));
+  }
+}
+
 void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed)
 {
   const int corner = t->grid->contact ? -LAM_ROOT * cells : 0, first[3] = {corner, corner, corner};

@@ -41,6 +41,12 @@ LamLoad LoadAtF33(const AnalyticTable *t, const double u[3], double v, double w,
 LamResponse AskFor(const AnalyticTable *t, const LamLoad *load, double accuracy);
 /* To any accuracy. */
 LamResponse Ask(const AnalyticTable *t, const LamLoad *load);
+/* Whether there is an answer. */
+PetscBool Answers(const AnalyticTable *t, const LamLoad *load, LamResponse *r);
+/* The answers at load +- h of one of its numbers, and the slope of a member for h = ANSWER_STEP. */
+void AnswerPair(const AnalyticTable *t, const LamLoad *load, size_t offset, double h, LamResponse pair[2]);
+#define ANSWER_STEP 1e-6
+#define ANSWER_SLOPE(pair, member) (((pair)[1].member - (pair)[0].member) / (2 * ANSWER_STEP))
 /* Root cells of a block, and of the finer nodes of two levels some; also some halves and quarters of suction.
    Of the finer nodes the share `failing` has no solution. With the axis F33 a quarter of the finer knots is missing. */
 void AddRough(AnalyticTable *t, int cells, double failing, uint64_t *seed);

@@ -34,12 +34,6 @@ static void StepInTurgor(const AnalyticTable *t, double step, LamLoad *load)
   if (t->grid->contact) load->cohesion -= step;
 }
 
-static PetscBool Answers(const AnalyticTable *t, const LamLoad *load, LamResponse *r)
-{
-  *r = Ask(t, load);
-  return (PetscBool)(r->status == LAM_CONVERGED);
-}
-
 /* ---- at nodes ---- */
 
 static void AssertSame(const LamResponse *r, const LamResponse *exact)
@@ -383,20 +377,6 @@ static void AtRandomStates(Comparison compare)
   }
 }
 
-/* The answers at load +- h of one of its numbers. */
-static void Pair(const AnalyticTable *t, const LamLoad *load, size_t offset, double h, LamResponse pair[2])
-{
-  for (int side = 0; side < 2; side++) {
-    LamLoad moved = *load;
-
-    *(PetscReal *)((char *)&moved + offset) += side ? h : -h;
-    assert_true(Answers(t, &moved, &pair[side]));
-  }
-}
-
-#define STEP 1e-6
-#define SLOPE(pair, member) (((pair)[1].member - (pair)[0].member) / (2 * STEP))
-
 static void CompareStress(const AnalyticTable *t, const LamLoad *load)
 {
   const LamResponse r = Ask(t, load);
@@ -404,8 +384,8 @@ static void CompareStress(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) {
     LamResponse pair[2];
 
-    Pair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), STEP, pair);
-    assert_near(SLOPE(pair, energy), r.P[in_plane[i]], 1e-8);
+    AnswerPair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), ANSWER_STEP, pair);
+    assert_near(ANSWER_SLOPE(pair, energy), r.P[in_plane[i]], 1e-8);
   }
 }
 
@@ -418,11 +398,11 @@ static void CompareTangent(const AnalyticTable *t, const LamLoad *load)
   for (int i = 0; i < 4; i++) {
     LamResponse pair[2];
 
-    Pair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), STEP, pair);
+    AnswerPair(t, load, offsetof(LamLoad, F) + (size_t)in_plane[i] * sizeof(PetscReal), ANSWER_STEP, pair);
     for (int j = 0; j < 4; j++) {
       const PetscReal A = r.tangent[9 * in_plane[j] + in_plane[i]];
 
-      assert_near(SLOPE(pair, P[in_plane[j]]), A, 1e-6);
+      assert_near(ANSWER_SLOPE(pair, P[in_plane[j]]), A, 1e-6);
       assert_near(r.tangent[9 * in_plane[i] + in_plane[j]], A, 1e-11);
     }
   }
@@ -435,11 +415,11 @@ static void CompareTurgor(const AnalyticTable *t, const LamLoad *load)
   const LamResponse r = Ask(t, load);
   LamResponse pair[2];
 
-  Pair(t, load, offsetof(LamLoad, turgor), STEP, pair);
-  assert_near(SLOPE(pair, energy), r.energy_turgor, 1e-8);
-  assert_near(SLOPE(pair, energy_turgor), r.energy_turgor2, 1e-6);
-  assert_near(SLOPE(pair, energy_cohesion), r.energy_turgor_cohesion, 1e-6);
-  for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_turgor[in_plane[i]], 1e-6);
+  AnswerPair(t, load, offsetof(LamLoad, turgor), ANSWER_STEP, pair);
+  assert_near(ANSWER_SLOPE(pair, energy), r.energy_turgor, 1e-8);
+  assert_near(ANSWER_SLOPE(pair, energy_turgor), r.energy_turgor2, 1e-6);
+  assert_near(ANSWER_SLOPE(pair, energy_cohesion), r.energy_turgor_cohesion, 1e-6);
+  for (int i = 0; i < 4; i++) assert_near(ANSWER_SLOPE(pair, P[in_plane[i]]), r.P_turgor[in_plane[i]], 1e-6);
 }
 
 TEST_IS(derivatives_in_turgor_are_slopes, AtRandomStates(CompareTurgor));
@@ -450,11 +430,11 @@ static void CompareCohesion(const AnalyticTable *t, const LamLoad *load)
   LamResponse pair[2];
 
   if (!t->grid->contact) return;
-  Pair(t, load, offsetof(LamLoad, cohesion), STEP, pair);
-  assert_near(SLOPE(pair, energy), r.energy_cohesion, 1e-8);
-  assert_near(SLOPE(pair, energy_cohesion), r.energy_cohesion2, 1e-6);
-  assert_near(SLOPE(pair, energy_turgor), r.energy_turgor_cohesion, 1e-6);
-  for (int i = 0; i < 4; i++) assert_near(SLOPE(pair, P[in_plane[i]]), r.P_cohesion[in_plane[i]], 1e-6);
+  AnswerPair(t, load, offsetof(LamLoad, cohesion), ANSWER_STEP, pair);
+  assert_near(ANSWER_SLOPE(pair, energy), r.energy_cohesion, 1e-8);
+  assert_near(ANSWER_SLOPE(pair, energy_cohesion), r.energy_cohesion2, 1e-6);
+  assert_near(ANSWER_SLOPE(pair, energy_turgor), r.energy_turgor_cohesion, 1e-6);
+  for (int i = 0; i < 4; i++) assert_near(ANSWER_SLOPE(pair, P[in_plane[i]]), r.P_cohesion[in_plane[i]], 1e-6);
 }
 
 TEST_IS(derivatives_in_cohesion_are_slopes, AtRandomStates(CompareCohesion));

@@ -34,12 +34,6 @@ static LamLoad RandomLoad(const AnalyticTable *t, uint64_t *seed)
   return LoadAtF33(t, u, v, w, angle);
 }
 
-static PetscBool Answers(const AnalyticTable *t, const LamLoad *load, LamResponse *r)
-{
-  *r = Ask(t, load);
-  return (PetscBool)(r->status == LAM_CONVERGED);
-}
-
 /* ---- at nodes ---- */
 
 static void AssertSame(const LamResponse *r, const LamResponse *exact)
@@ -171,20 +165,6 @@ static void AtRandomStates(Comparison compare)
   }
 }
 
-/* The answers at load +- h of one of its numbers. */
-static void Pair(const AnalyticTable *t, const LamLoad *load, size_t offset, double h, LamResponse pair[2])
-{
-  for (int side = 0; side < 2; side++) {
-    LamLoad moved = *load;
-
-    *(PetscReal *)((char *)&moved + offset) += side ? h : -h;
-    assert_true(Answers(t, &moved, &pair[side]));
-  }
-}
-
-#define STEP 1e-6
-#define SLOPE(pair, member) (((pair)[1].member - (pair)[0].member) / (2 * STEP))
-
 static void CompareStrains(const AnalyticTable *t, const LamLoad *load)
 {
   const LamResponse r = Ask(t, load);
@@ -193,14 +173,14 @@ static void CompareStrains(const AnalyticTable *t, const LamLoad *load)
     const int a = entries[i];
     LamResponse pair[2];
 
-    Pair(t, load, offsetof(LamLoad, F) + (size_t)a * sizeof(PetscReal), STEP, pair);
-    assert_near(SLOPE(pair, energy), r.P[a], 1e-8);
-    assert_near(SLOPE(pair, energy_turgor), r.P_turgor[a], 1e-6);
-    assert_near(SLOPE(pair, energy_cohesion), r.P_cohesion[a], 1e-6);
+    AnswerPair(t, load, offsetof(LamLoad, F) + (size_t)a * sizeof(PetscReal), ANSWER_STEP, pair);
+    assert_near(ANSWER_SLOPE(pair, energy), r.P[a], 1e-8);
+    assert_near(ANSWER_SLOPE(pair, energy_turgor), r.P_turgor[a], 1e-6);
+    assert_near(ANSWER_SLOPE(pair, energy_cohesion), r.P_cohesion[a], 1e-6);
     for (int j = 0; j < 5; j++) {
       const int b = entries[j];
 
-      assert_near(SLOPE(pair, P[b]), r.tangent[9 * b + a], 1e-6);
+      assert_near(ANSWER_SLOPE(pair, P[b]), r.tangent[9 * b + a], 1e-6);
       assert_near(r.tangent[9 * a + b], r.tangent[9 * b + a], 1e-11);
     }
   }
@@ -213,16 +193,16 @@ static void ComparePressures(const AnalyticTable *t, const LamLoad *load)
   const LamResponse r = Ask(t, load);
   LamResponse pair[2];
 
-  Pair(t, load, offsetof(LamLoad, turgor), STEP, pair);
-  assert_near(SLOPE(pair, energy), r.energy_turgor, 1e-8);
-  assert_near(SLOPE(pair, energy_turgor), r.energy_turgor2, 1e-6);
-  assert_near(SLOPE(pair, energy_cohesion), r.energy_turgor_cohesion, 1e-6);
-  for (int i = 0; i < 5; i++) assert_near(SLOPE(pair, P[entries[i]]), r.P_turgor[entries[i]], 1e-6);
+  AnswerPair(t, load, offsetof(LamLoad, turgor), ANSWER_STEP, pair);
+  assert_near(ANSWER_SLOPE(pair, energy), r.energy_turgor, 1e-8);
+  assert_near(ANSWER_SLOPE(pair, energy_turgor), r.energy_turgor2, 1e-6);
+  assert_near(ANSWER_SLOPE(pair, energy_cohesion), r.energy_turgor_cohesion, 1e-6);
+  for (int i = 0; i < 5; i++) assert_near(ANSWER_SLOPE(pair, P[entries[i]]), r.P_turgor[entries[i]], 1e-6);
   if (!t->grid->contact) return;
-  Pair(t, load, offsetof(LamLoad, cohesion), STEP, pair);
-  assert_near(SLOPE(pair, energy), r.energy_cohesion, 1e-8);
-  assert_near(SLOPE(pair, energy_cohesion), r.energy_cohesion2, 1e-6);
-  for (int i = 0; i < 5; i++) assert_near(SLOPE(pair, P[entries[i]]), r.P_cohesion[entries[i]], 1e-6);
+  AnswerPair(t, load, offsetof(LamLoad, cohesion), ANSWER_STEP, pair);
+  assert_near(ANSWER_SLOPE(pair, energy), r.energy_cohesion, 1e-8);
+  assert_near(ANSWER_SLOPE(pair, energy_cohesion), r.energy_cohesion2, 1e-6);
+  for (int i = 0; i < 5; i++) assert_near(ANSWER_SLOPE(pair, P[entries[i]]), r.P_cohesion[entries[i]], 1e-6);
 }
 
 TEST_IS(derivatives_in_turgor_and_cohesion_are_slopes, AtRandomStates(ComparePressures));
