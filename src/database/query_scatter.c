@@ -177,6 +177,7 @@ static void Finish(const LamScatterSearch *search, Sums *s, LamExpansion *blend)
 
   CompleteHessians(search, s);
   memcpy(blend->x, search->x, sizeof(blend->x));
+  blend->F33 = s->first.F33; /* AddState takes records of this F33 alone */
   blend->energy = s->first.energy + energy;
   blend->P33 = s->first.P33 + P33;
   for (int a = 0; a < LAM_VARIABLES; a++) {

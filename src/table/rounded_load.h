@@ -15,7 +15,7 @@ static inline PetscReal LamOnGrid(PetscReal x)
 
 static inline LamLoad LamLoadRound(const LamLoad *load)
 {
-  LamLoad rounded;
+  LamLoad rounded = *load;
 
   for (int k = 0; k < 9; k++) rounded.F[k] = LamOnGrid(load->F[k]);
   rounded.turgor = LamOnGrid(load->turgor);
