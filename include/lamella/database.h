@@ -185,6 +185,8 @@ LAM_EXPORT PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad 
 LAM_EXPORT PetscInt LamGridNodeLevel(LamGrid grid, PetscInt64 key);
 /* Position of the node for distances: three lattice strains and the logarithm of suction, in edges of root cells. */
 LAM_EXPORT void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4]);
+/* The smallest and the largest F33 of the grid's states; both 1: plane strain. */
+LAM_EXPORT void LamGridGetF33(LamGrid grid, PetscReal range[2]);
 /* The node whose solution may start a solve of this one: the next one towards coarser nodes; -1: the reference. */
 LAM_EXPORT PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key);
 

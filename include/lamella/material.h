@@ -10,9 +10,10 @@
   database it interpolates, keeps no states, and is thread-safe.
 
   F and P are 3 x 3, row-major (11 12 13 21 22 23 31 32 33); P is the first Piola-Kirchhoff stress, Pa. The tangent is
-  dP_ij/dF_kl, 9 x 9: row ij, column kl, Pa. Tissue is in plane strain: F33 = 1, no out-of-plane shear; derivatives of
-  and with respect to out-of-plane shears are unknown: NaN. Needs PetscInitialize; LamErrorMessage (error.h) returns
-  the text of an error.
+  dP_ij/dF_kl, 9 x 9: row ij, column kl, Pa. The cells' axis is direction 3. F is that of plane strain with any F33, of
+  a database the F33 that it covers; derivatives of and with respect to out-of-plane shears are NaN. A scene has any F
+  and all derivatives after LamMaterialSetOutOfPlane, for three-dimensional bodies. Needs PetscInitialize;
+  LamErrorMessage (error.h) returns the text of an error.
 */
 #ifndef LAMELLA_MATERIAL_H
 #define LAMELLA_MATERIAL_H
@@ -41,6 +42,12 @@ LAM_EXPORT PetscErrorCode LamMaterialCreateFromScene(const char path[], int poin
 LAM_EXPORT PetscErrorCode LamMaterialCreateFromDatabase(const char path[], LamMaterial *material);
 LAM_EXPORT PetscErrorCode LamMaterialDestroy(LamMaterial *material);
 
+/*
+  Any F, and all entries of the tangent: a quarter more time for each solve. Of a scene, before the first evaluation,
+  and undeformed again afterwards; default: off, unless the scene's loads or fibres leave the section. PETSC_ERR_SUP for
+  a database.
+*/
+LAM_EXPORT PetscErrorCode LamMaterialSetOutOfPlane(LamMaterial material, int on);
 /* Turgor and cohesion of the scene, Pa: defaults of LamMaterialEvaluate. */
 LAM_EXPORT PetscErrorCode LamMaterialGetLoads(LamMaterial material, double *turgor, double *cohesion);
 /* Largest relative error of P at which a database responds; default: the scene's accuracy. */

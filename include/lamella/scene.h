@@ -221,7 +221,7 @@ LAM_EXPORT extern const char *const LamAreaNames[]; /* "rest", "inflated" */
 typedef struct {
   PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
   PetscReal turgor_min, turgor_max;
-  PetscReal F33_min, F33_max; /* both 1: plane strain */
+  PetscReal F33_min, F33_max; /* without a sample block too; both 1: plane strain */
   PetscInt count;     /* number of samples; 0: until the accuracy is reached */
   PetscReal accuracy; /* 0 if count is given */
   PetscInt round;     /* minimum number of nodes that are started together */

@@ -55,11 +55,6 @@ static void CheckStrain(const char *amat, const double F[9], const double strain
   }
 }
 
-static void Transpose(const double columns[9], double F[9])
-{
-  for (int i = 0; i < 9; i++) F[i] = columns[3 * (i % 3) + i / 3];
-}
-
 static void Return(const double F[9], const TissueResponse *response, double stre[SIX], double stiff[])
 {
   double C[SIX][SIX];
@@ -90,9 +85,9 @@ void CALCULIX(const char *amat, const int *iel, const int *iint, const int *kode
 
   CheckArguments(amat, *nstate_, *ithermal, *iorien, beta);
   tissue = TissueFind(amat, NAME, -*kode - 100, elconloc);
-  Transpose(xokl, start);
+  TissueGradient(xokl, start);
   if (*ielas != ELASTIC_ITERATION) {
-    Transpose(xkl, F);
+    TissueGradient(xkl, F);
     CheckStrain(amat, F, emec);
     if (TissueRespond(tissue, &load, begin, &xstate[place], &response)) {
       Return(F, &response, stre, stiff);

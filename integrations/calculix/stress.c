@@ -1,28 +1,32 @@
 /*
-  Method. The plane strain of tissue leaves no out-of-plane shear: P and A have none, and A is unknown (NaN) where an
-  index pair is 13, 23, 31 or 32. Sums therefore run over pairs within the plane, and 33. The stiffness against shear
-  out of the plane, C_1313 = C_2323, is set to C_1212, and C_1323 to 0: any value would do, since it multiplies no
-  strain (hosts with such strain are refused), but 0 would make a host's matrix singular where it keeps that freedom.
+  Method. A scene gives all of A; a database, which holds states without out-of-plane shear, all but the entries with an
+  index pair 13, 23, 31 or 32, which are NaN. With such an F they do not enter the rest of C, and are left out of the
+  sums by factors that are 0. What remains unknown of C is the stiffness against shear out of the plane: C_1313 and
+  C_2323 are set to C_1212, and C_1323 to 0: any value would do, since it multiplies no strain (a database refuses it),
+  but 0 would make a host's matrix singular where it keeps that freedom.
 */
 #include "stress.h"
+#include <math.h>
 
 static const int First[SIX] = {0, 1, 2, 0, 0, 1}, Second[SIX] = {0, 1, 2, 1, 2, 2};
 static const int Component[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-enum { PLANE = 4 }; /* 11, 22, 33, 12: components that plane strain has */
 
-/* Of a matrix that couples no direction of the plane with the third. */
-static void Invert(const double F[9], double inverse[3][3])
+static double Determinant(const double F[9])
 {
-  const double J = F[0] * F[4] - F[1] * F[3];
-  const double values[3][3] = {{F[4] / J, -F[1] / J, 0}, {-F[3] / J, F[0] / J, 0}, {0, 0, 1 / F[8]}};
-
-  for (int i = 0; i < 9; i++) inverse[i / 3][i % 3] = values[i / 3][i % 3];
+  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
 }
 
-/* Whether directions i and j are both in the plane, or both out of it. */
-static int Coupled(int i, int j)
+static void Invert(const double F[9], double inverse[3][3])
 {
-  return (i == 2) == (j == 2);
+  const double J = Determinant(F);
+
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      const int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3; /* cofactor of F_ji */
+
+      inverse[i][j] = (F[3 * c + a] * F[3 * d + b] - F[3 * c + b] * F[3 * d + a]) / J;
+    }
+  }
 }
 
 static double MaterialTangent(const double inverse[3][3], const double A[81], const double S[SIX], int a, int b)
@@ -32,8 +36,9 @@ static double MaterialTangent(const double inverse[3][3], const double A[81], co
 
   for (int i = 0; i < 3; i++) {
     for (int k = 0; k < 3; k++) {
-      if (!Coupled(i, I) || !Coupled(k, K)) continue;
-      sum += inverse[I][i] * inverse[K][k] * (A[27 * i + 9 * J + 3 * k + L] - (i == k ? S[Component[J][L]] : 0));
+      const double factor = inverse[I][i] * inverse[K][k];
+
+      if (factor != 0) sum += factor * (A[27 * i + 9 * J + 3 * k + L] - (i == k ? S[Component[J][L]] : 0));
     }
   }
   return sum;
@@ -46,17 +51,14 @@ void StressMaterial(const double F[9], const double P[9], const double A[81], do
   Invert(F, inverse);
   for (int a = 0; a < SIX; a++) {
     S[a] = 0;
-    for (int i = 0; i < 3 && a < PLANE; i++) S[a] += inverse[First[a]][i] * P[3 * i + Second[a]];
+    for (int i = 0; i < 3; i++) S[a] += inverse[First[a]][i] * P[3 * i + Second[a]];
   }
-  for (int a = 0; a < SIX; a++) {
-    for (int b = 0; b < SIX; b++) {
-      const int known = a < PLANE && b < PLANE;
-
-      /* the mean of both orders: P33 of a database is interpolated apart, and not a derivative to the last digit */
-      C[a][b] = known ? (MaterialTangent(inverse, A, S, a, b) + MaterialTangent(inverse, A, S, b, a)) / 2 : 0;
-    }
-  }
-  for (int a = PLANE; a < SIX; a++) C[a][a] = C[3][3];
+  for (int a = 0; a < SIX; a++) /* the mean of both orders: P33 of a database may be interpolated apart */
+    for (int b = 0; b < SIX; b++)
+      C[a][b] = (MaterialTangent(inverse, A, S, a, b) + MaterialTangent(inverse, A, S, b, a)) / 2;
+  for (int a = 0; a < SIX; a++)
+    for (int b = 0; b < SIX; b++)
+      if (isnan(C[a][b])) C[a][b] = a == b ? C[3][3] : 0;
 }
 
 static double PushedForward(const double F[9], double C[SIX][SIX], int a, int b)
@@ -74,7 +76,7 @@ static double PushedForward(const double F[9], double C[SIX][SIX], int a, int b)
 
 void StressSpatial(const double F[9], const double S[SIX], double C[SIX][SIX], double s[SIX], double jaumann[SIX][SIX])
 {
-  const double J = (F[0] * F[4] - F[1] * F[3]) * F[8];
+  const double J = Determinant(F);
 
   for (int a = 0; a < SIX; a++) {
     s[a] = 0;

@@ -2,7 +2,7 @@
   The same stress and tangent for each host, from P = first Piola-Kirchhoff stress and A_iJkL = dP_iJ/dF_kL.
 
   Components are in the order of both hosts, 11 22 33 12 13 23, of which each entry is one of the tensor (no factors of
-  Voigt). F, P and A are row-major; F is of plane strain.
+  Voigt). F, P and A are row-major. NaN in A: unknown, of and by out-of-plane shears where F has none.
 */
 #ifndef STRESS_H
 #define STRESS_H

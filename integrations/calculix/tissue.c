@@ -23,7 +23,7 @@ LAM_EXPORT const char *LamErrorMessage(void); /* of error.h, which wants the hea
 
 enum { NAME = 81, PATH = 4096, LOAD = 11 /* numbers of a load in bind.h */ };
 
-/* Larger than rounding in a host's F, and too small to matter: a strain that is left out. */
+/* Larger than rounding in a host's F, and too small to matter: a strain out of the plane that is left out. */
 static const double TINY = 1e-10;
 /* Between F at the end of an increment and at the start of the next: more than rounding, and less than any strain that
    tells two states apart. */
@@ -265,18 +265,22 @@ static void Keep(Tissue t, const TissueLoad *load, Point *p)
 static void FillLoad(Tissue t, const TissueLoad *load, double row[])
 {
   const double *F = load->F;
-  const double out = fmax(fmax(fmax(fabs(F[2]), fabs(F[5])), fmax(fabs(F[6]), fabs(F[7]))), fabs(F[8] - 1));
 
-  if (!(out <= TINY))
-    TissueFail("material %s, element %d, point %d: F13 = %g, F23 = %g, F31 = %g, F32 = %g, F33 = %g: tissue is in "
-               "plane strain (F33 = 1, the others 0); take elements of plane strain, whose third axis is the cells'",
-               t->name, load->element, load->point, F[2], F[5], F[6], F[7], F[8]);
-  memset(row, 0, LOAD * sizeof(*row));
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++) row[3 * i + j] = F[3 * i + j];
-  row[8] = 1;
+  if (t->database && (F[2] != 0 || F[5] != 0 || F[6] != 0 || F[7] != 0))
+    TissueFail("material %s, element %d, point %d: F13 = %g, F23 = %g, F31 = %g, F32 = %g: a database has no shear "
+               "out of the cells' section; take elements of plane strain, whose third axis is the cells', or a scene",
+               t->name, load->element, load->point, F[2], F[5], F[6], F[7]);
+  memcpy(row, F, 9 * sizeof(*row));
   row[9] = load->turgor * t->unit;
   row[10] = t->cohesion;
+}
+
+void TissueGradient(const double columns[9], double F[9])
+{
+  for (int i = 0; i < 9; i++) F[i] = columns[3 * (i % 3) + i / 3];
+  for (int i = 2; i < 8; i++) /* 13, 23, 31, 32 */
+    if (i % 3 != i / 3 && (i % 3 == 2 || i / 3 == 2) && fabs(F[i]) <= TINY) F[i] = 0;
+  if (fabs(F[8] - 1) <= TINY) F[8] = 1;
 }
 
 /* Copies what is needed of a response of the library; returns whether it is one of a stable equilibrium. */

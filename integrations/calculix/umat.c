@@ -6,8 +6,6 @@
 #include "tissue.h"
 #include <math.h>
 
-enum { PLANE = 4 }; /* components of plane strain: 11 22 33 12 */
-
 __attribute__((visibility("default"))) void umat_(
     double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, double *rpl, double *ddsddt,
     double *drplde, double *drpldt, const double *stran, const double *dstran, const double *time, const double *dtime,
@@ -24,7 +22,7 @@ static void CheckArguments(const char *cmname, int length, int ndi, int nshr, in
     TissueFail("material %.*s: CalculiX takes stress in another frame from a UMAT; write @LAMELLAUMAT_CALCULIX@NAME",
                length, cmname);
   if (ndi != 3 || (nshr != 1 && nshr != 3))
-    TissueFail("material %.*s: %d normal and %d shear components; take elements of plane strain", length, cmname, ndi,
+    TissueFail("material %.*s: %d normal and %d shear components; take elements of plane strain, or solids", length, cmname, ndi,
                nshr);
   if (nstatv < TISSUE_VARIABLES)
     TissueFail("material %.*s: %d state variables; write *DEPVAR and %d below it", length, cmname, nstatv,
@@ -58,10 +56,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
   Tissue tissue;
 
   CheckArguments(cmname, length, *ndi, *nshr, *nstatv);
-  for (int i = 0; i < 9; i++) {
-    F0[i] = dfgrd0[3 * (i % 3) + i / 3];
-    F[i] = dfgrd1[3 * (i % 3) + i / 3];
-  }
+  TissueGradient(dfgrd0, F0);
+  TissueGradient(dfgrd1, F);
   CheckStrain(cmname, length, *ntens, F, stran, dstran);
   tissue = TissueFind(cmname, length, *nprops, props);
   if (!TissueRespond(tissue, &load, statev, statev, &response)) {

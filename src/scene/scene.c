@@ -54,7 +54,7 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
 static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
 {
   static PetscErrorCode (*const parts[])(const LamNode *, LamScene *) = {
-      LamSceneBuildRVE,     LamSceneBuildStrength, LamSceneBuildLoad,  LamSceneBuildSample, LamSceneBuildMacro,
+      LamSceneBuildRVE,     LamSceneBuildStrength, LamSceneBuildLoad,  LamSceneBuildMacro, LamSceneBuildSample,
       LamSceneBuildRegions, LamSceneBuildResponse, LamSceneCheckPatch, LamSceneBuildMap,    LamSceneBuildProcess};
 
   PetscFunctionBeginUser;

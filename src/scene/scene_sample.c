@@ -17,7 +17,7 @@ static const LamKey sample_keys[] = {
     {STRESS("sample.turgor.min"), INTO(LamSample, turgor_min), REQUIRED, .example = "0 MPa", .help = "Smallest."},
     {STRESS("sample.turgor.max"), INTO(LamSample, turgor_max), REQUIRED, .example = "0.05 MPa",
      .help = "Largest; not below `min`."},
-    {MAP("sample.F33"), .default_words = "1 alone: plane strain", .example = "{min: 0.8, max: 1.2}",
+    {MAP("sample.F33"), .default_words = "1 alone; 0.7 to 1.5 with an axisymmetric body", .example = "{min: 0.8, max: 1.2}",
      .help = "Stretch along the cells' axis, as that around the axis of an axisymmetric body."},
     {REAL("sample.F33.min"), INTO(LamSample, F33_min), REQUIRED, FROM(0.2), TO(5), .example = "0.8",
      .help = "Smallest."},
@@ -44,6 +44,15 @@ static PetscErrorCode CheckRange(const LamNode *range)
   PetscFunctionReturn(0);
 }
 
+/* Without `F33`. That of a cylinder at 30 % and of a fruit at a probe, with turgor, is 1.05 to 1.39. */
+static void DefaultF33(const LamScene *scene, LamSample *sample)
+{
+  const PetscBool around = (PetscBool)(scene->macro.symmetry == LAM_AXISYMMETRIC);
+
+  sample->F33_min = around ? 0.7 : 1;
+  sample->F33_max = around ? 1.5 : 1;
+}
+
 /* One F33 would be another plane strain, for which there is no axis. */
 static PetscErrorCode CheckF33(const LamNode *range, const LamSample *sample)
 {
@@ -61,6 +70,7 @@ PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
   LamSample *sample = &scene->sample;
 
   PetscFunctionBeginUser;
+  DefaultF33(scene, sample);
   if (!block) PetscFunctionReturn(0);
   LamSceneCheckName(!scene->sealed, block,
                     "contradicts turgor mode: sealed; a database holds states of prescribed turgor, from which those "
@@ -77,7 +87,6 @@ PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
       "rve.wall.relaxation, for those in the end leave it out and write what is left of the moduli");
   scene->has_sample = PETSC_TRUE;
   sample->turgor_min = sample->turgor_max = scene->turgor;
-  sample->F33_min = sample->F33_max = 1;
   sample->accuracy = count ? 0.0 : scene->accuracy;
   PetscCall(LamSceneFill(block, &scene->scales, LamSample, sample));
   PetscCall(CheckRange(LamNodeFind(block, "stretch")));

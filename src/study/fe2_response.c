@@ -70,6 +70,23 @@ static PetscErrorCode OpenDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
+/* A database without a grid is given one (GiveGrid). */
+static PetscErrorCode CheckF33(LamFE2Run *run, LamFE2Tissue *tissue)
+{
+  PetscReal range[2] = {1, 1};
+  LamGrid grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
+  if (grid) LamGridGetF33(grid, range);
+  PetscCheck(run->scene->macro.symmetry != LAM_AXISYMMETRIC || !grid || range[1] > range[0], PETSC_COMM_SELF,
+             PETSC_ERR_USER_INPUT,
+             "%s: holds states of plane strain, and F33 varies in an axisymmetric body: build it of a scene with "
+             "sample.F33, or give another name for a new one",
+             tissue->database_path);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
 {
   char *json, wanted[LAM_HASH_LENGTH], difference[LAM_DIFFERENCE_LENGTH] = "";
@@ -87,6 +104,7 @@ static PetscErrorCode CheckDatabase(LamFE2Run *run, LamFE2Tissue *tissue)
              "another name "
              "for a new one",
              tissue->database_path, run->scene_path, tissue->name[0] ? " for " : "", tissue->name, difference);
+  PetscCall(CheckF33(run, tissue));
   PetscCall(LamDatabaseGetRecords(tissue->database, &tissue->recorded, NULL, NULL));
   if (!run->archive) tissue->known.first = tissue->recorded;
   PetscFunctionReturn(0);
@@ -102,6 +120,10 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
       !models || !LamWallsTilt(&tissue->scene.micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
       "%s: rve.wall.fibre_angle: models of a lamella are those of fibres in the section; choose --response direct",
       run->scene_path);
+  PetscCheck(!models || run->scene->macro.symmetry != LAM_AXISYMMETRIC, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: macro.symmetry: axisymmetric: models of a lamella are those of one F33, which varies in such a body; "
+             "choose --response direct",
+             run->scene_path);
   if (run->response == LAM_FE2_DATABASE)
     PetscCall(
         LamRefuseHistory(run->scene_path, &tissue->scene.micro, "a table",
@@ -123,11 +145,6 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   LamFE2Tissues *tissues = &run->tissues;
 
   PetscFunctionBeginUser;
-  PetscCheck(run->response == LAM_FE2_DIRECT || run->scene->macro.symmetry != LAM_AXISYMMETRIC, PETSC_COMM_SELF,
-             PETSC_ERR_USER_INPUT,
-             "%s: macro.symmetry: axisymmetric: databases and models of material points do not respond for such a body, "
-             "whose F33 varies; choose --response direct",
-             run->scene_path);
   PetscCall(LamFE2TissuesCreate(run->comm, &run->reporter, run->macro, run->scene, run->database_path, tissues));
   for (PetscInt t = 0; t < tissues->count; t++) PetscCall(LamFE2PrepareTissue(run, &tissues->tissues[t]));
   if (run->database_path && LamFE2AllHoldModels(run) && LamIsFirst(run->comm))

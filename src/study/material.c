@@ -23,6 +23,22 @@ struct LamMaterial_s {
 
 /* ---- lifecycle ---- */
 
+static PetscErrorCode CreateRVE(LamMaterial m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, m->scene, &m->rve));
+  PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DestroyRVE(LamMaterial m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LamResponderDestroy(&m->responder));
+  PetscCall(LamRVEDestroy(&m->rve));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
 {
   PetscFunctionBeginUser;
@@ -33,8 +49,7 @@ static PetscErrorCode ConnectScene(const char path[], LamMaterial m)
              path);
   PetscCall(LamRefuseHistory(path, &m->scene->micro, "a material", ""));
   PetscCall(LamChooseMesh(m->scene, NULL));
-  PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, m->scene, &m->rve));
-  PetscCall(LamRVEResponderCreate(m->rve, m->points, &m->responder));
+  PetscCall(CreateRVE(m));
   m->scales = m->scene->scales;
   m->interface = m->scene->micro.interface;
   m->turgor = m->scene->turgor;
@@ -91,11 +106,20 @@ PetscErrorCode LamMaterialDestroy(LamMaterial *material)
   PetscFunctionBeginUser;
   *material = NULL;
   if (!m) PetscFunctionReturn(0);
-  PetscCall(LamResponderDestroy(&m->responder));
-  PetscCall(LamRVEDestroy(&m->rve));
+  PetscCall(DestroyRVE(m));
   PetscCall(LamSceneDestroy(&m->scene));
   PetscCall(LamQuerySourceClose(&m->database));
   PetscCall(PetscFree(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamMaterialSetOutOfPlane(LamMaterial m, int on)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(m->rve, PETSC_COMM_SELF, PETSC_ERR_SUP, "a database has no states with out-of-plane shear; take a scene");
+  m->scene->out_of_plane = on ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(DestroyRVE(m));
+  PetscCall(CreateRVE(m));
   PetscFunctionReturn(0);
 }
 

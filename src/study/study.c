@@ -117,6 +117,7 @@ PetscErrorCode LamSceneRVECreate(MPI_Comm comm, const LamScene *scene, LamRVE *r
   PetscCall(LamRVESetMicrostructure(*rve, &scene->micro));
   PetscCall(LamRVESetStrategy(*rve, scene->strategy));
   PetscCall(LamRVESetTolerance(*rve, scene->tolerance));
+  PetscCall(LamRVESetOutOfPlane(*rve, scene->out_of_plane));
   PetscCall(LamRVESetUp(*rve));
   PetscFunctionReturn(0);
 }

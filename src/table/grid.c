@@ -137,6 +137,12 @@ void LamGridNodePlace(LamGrid grid, PetscInt64 key, PetscReal place[4])
   place[3] = (PetscReal)at.j / LAM_ROOT;
 }
 
+void LamGridGetF33(LamGrid grid, PetscReal range[2])
+{
+  range[0] = exp(grid->z_min);
+  range[1] = exp(grid->z_min + grid->z_step * (PetscReal)grid->z_cells);
+}
+
 PetscInt64 LamGridNodeParent(LamGrid grid, PetscInt64 key)
 {
   LamNodePlace place = LamNodePlaceOf(key);
@@ -193,6 +199,7 @@ static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box,
   PetscFunctionReturn(0);
 }
 
+/* Of scenes without a sample box too. */
 static void LayOutF33(const LamSample *box, LamGrid g)
 {
   const PetscReal range = log(box->F33_max / box->F33_min);
@@ -253,7 +260,7 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid
   *grid = g;
   PetscCall(SetTissue(micro, g));
   LayOutStrains(scene, box, g);
-  if (box->F33_max > box->F33_min) LayOutF33(box, g);
+  if (scene->sample.F33_max > scene->sample.F33_min) LayOutF33(&scene->sample, g);
   if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
   PetscCall(MakeFreeKeys(g));
   PetscFunctionReturn(0);

@@ -99,7 +99,7 @@ python3 deck.py tissue.h5 "1e6, 0.02" 0.02 0.5 1.6,0,0,1 | sed 's/, DIRECT//; s/
 ccx 201 reach
 has out.txt "INFO from Lamella: the increment is halved: element 1, point 1, F = " "out_of_reach" "increment size smaller than minimum"
 
-# refused: a restart of a scene, what is not plane strain, no NLGEOM, thermal strain, a file that is not there
+# refused: a restart of a scene, an F33 that a database lacks, no NLGEOM, thermal strain, a file that is not there
 awk '/^\*STEP/ {step++; if (step == 2) print "*RESTART, READ, STEP=1"} step >= 2' history.inp >again.inp
 sed '/^\*STEP/,$!d' history.inp | awk '/^\*STEP/ {step++} step <= 1' | cat <(sed '/^\*STEP/,$d' history.inp) - >first.inp
 ccx 0 first
@@ -118,7 +118,7 @@ refused "there is no file TISSU.H5" 's/tissue.h5/tissu.h5/'
 refused "0 state variables; write \*DEPVAR" '/^\*DEPVAR/,+1d'
 refused "temperature is turgor" '/^\*INITIAL/,+1d; /^\*TEMPERATURE/,+1d'
 sed -i 's/CPE8R/CPS8R/' mesh.inp
-refused "tissue is in plane strain" ''
+refused "the database covers 1 alone (plane strain)" ''
 
 # the block of the documents: rows of the table there
 cp "$example/mesh.py" .

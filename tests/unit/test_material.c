@@ -48,6 +48,34 @@ TEST(stress_and_tangent_are_those_of_the_rve_in_pascal)
   LamSceneDestroy(&scene);
 }
 
+/* Shears out of the plane are those of the RVE itself. */
+TEST(a_scene_has_any_F_and_its_whole_tangent_if_it_shall)
+{
+  const double F[9] = {1.02, 0.05, 0.03, 0, 1, -0.04, 0.02, 0.01, 1.05}, h = 1e-6;
+  double P[9], side[2][9], tangent[81];
+  LamMaterialInfo info;
+  LamMaterial material;
+
+  assert_int_equal(LamMaterialCreateFromScene(scene_path, 0, &material), 0);
+  assert_int_equal(LamMaterialEvaluate(material, 1, NULL, F, NULL, NULL, P, NULL, &info), 0);
+  assert_int_equal(info.status, LAM_INVALID_F);
+  assert_int_equal(LamMaterialSetOutOfPlane(material, 1), 0);
+  assert_int_equal(LamMaterialEvaluate(material, 1, NULL, F, NULL, NULL, P, tangent, &info), 0);
+  assert_int_equal(info.status, LAM_CONVERGED);
+  for (int j = 0; j < 9; j++) {
+    for (int k = 0; k < 2; k++) {
+      double moved[9];
+
+      memcpy(moved, F, sizeof(F));
+      moved[j] += k ? h : -h;
+      assert_int_equal(LamMaterialEvaluate(material, 1, NULL, moved, NULL, NULL, side[k], NULL, NULL), 0);
+    }
+    for (int i = 0; i < 9; i++)
+      assert_true(fabs(tangent[9 * i + j] - (side[1][i] - side[0][i]) / (2 * h)) < 1e-5 * fabs(tangent[80]));
+  }
+  LamMaterialDestroy(&material);
+}
+
 /* The load step after the one that was saved ends in the same numbers. */
 TEST(a_restored_state_goes_on_as_the_one_saved)
 {
