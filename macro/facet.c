@@ -35,6 +35,11 @@ void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *
   *weight = q == 1 ? 8. / 9 : 5. / 9;
 }
 
+PetscReal LamMacroAround(LamMacro macro, const PetscReal N[3], const PetscReal x[6])
+{
+  return macro->axisymmetric ? 2 * PETSC_PI * (N[0] * x[0] + N[1] * x[2] + N[2] * x[4]) : 1;
+}
+
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2])
 {
   const PetscInt set = LamMacroFindSet(macro, boundary->on);

@@ -365,17 +365,6 @@ PetscErrorCode LamMacroListNodes(LamMacro macro);
 /* The named set; -1: none. */
 PetscInt LamMacroFindSet(LamMacro macro, const char name[]);
 
-/* mesh_box.c */
-PetscErrorCode LamMacroBoxCreate(MPI_Comm comm, const LamMacroSpec *spec, DM *dm);
-/* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
-PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
-/* mesh_gmsh.c */
-/* `key`: "scene.yaml:6:16: macro.mesh.gmsh", for messages. */
-PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char key[], const char path[], DM *dm);
-/* Whether the file is safe to read for PETSc, which does not check it; `why`: reason if not. */
-#define LAM_GMSH_WHY 200
-PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);
-
 /* element.c */
 /* The kind of a polytope, created at its first use. Error PETSC_ERR_SUP if there is none. */
 PetscErrorCode LamMacroKindGet(LamMacro macro, DMPolytopeType polytope, const LamMacroKind **kind);
@@ -391,6 +380,8 @@ PetscErrorCode LamMacroFacetNodes(LamMacro macro, const LamMacroFacet *facet, Pe
 enum { LAM_FACET_POINTS = 3 };
 /* Shape functions N [3] and their derivatives dN [3] at Gauss point q of a facet, xi = -1..1, and its weight. */
 void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *weight);
+/* 2 pi times the radius of a point of a facet at positions x [3][2], of an axisymmetric body; else 1. */
+PetscReal LamMacroAround(LamMacro macro, const PetscReal N[3], const PetscReal x[6]);
 /* Outward unit normal of a condition's side; PETSC_ERR_USER_INPUT if it is not straight. */
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2]);
 

@@ -5,6 +5,7 @@
   isoparametric: X = sum_a N_a X_a with the same shape functions as the displacement, so edges may be curved.
 */
 #include "macro_impl.h"
+#include "mesh_sources.h"
 
 #define OUTER "outer facets" /* label of the undistributed mesh's boundary; a rank's own boundary has more facets */
 

@@ -3,6 +3,7 @@
   last one is `grading` times the first one.
 */
 #include "macro_impl.h"
+#include "mesh_sources.h"
 
 /* Moves a coordinate of an even grid. */
 static PetscReal Graded(PetscReal x, PetscReal edge, PetscInt n, PetscReal grading)

@@ -6,6 +6,7 @@
   vertices that no element of the part uses are omitted.
 */
 #include "macro_impl.h"
+#include "mesh_sources.h"
 
 static const PetscReal SQUARE = 0.5; /* half the edge of the inner square relative to the radius */
 

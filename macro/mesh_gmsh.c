@@ -4,6 +4,7 @@
   all elements are of one kind.
 */
 #include "macro_impl.h"
+#include "mesh_sources.h"
 
 /* Rank 0 checks the file before PETSc reads it: PETSc does not validate it, and its error messages do not name it. */
 static PetscErrorCode CheckFile(MPI_Comm comm, const char key[], const char path[])

@@ -12,6 +12,7 @@
     C. Geuzaine and J.-F. Remacle, Gmsh Reference Manual, Sections "MSH file format" and "MSH file format version 2".
 */
 #include "macro_impl.h"
+#include "mesh_sources.h"
 #include <petsc/private/hashsetij.h>
 #include <errno.h>
 #include <limits.h>

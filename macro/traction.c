@@ -39,12 +39,6 @@ static void FollowerMatrix(const LamBoundary *boundary, PetscReal factor, PetscR
   T[2] = -T[1];
 }
 
-/* 2 pi times the radius of a point of a facet at positions x [3][2], of an axisymmetric body; else 1. */
-static PetscReal Around(LamMacro macro, const PetscReal N[3], const PetscReal x[6])
-{
-  return macro->axisymmetric ? 2 * PETSC_PI * (N[0] * x[0] + N[1] * x[2] + N[2] * x[4]) : 1;
-}
-
 /* Adds the nodal forces fe [3][2] of one entry's traction on a facet, at displacements ue [3][2]. */
 static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, const LamBoundary *boundary,
                                     PetscReal factor, const PetscScalar ue[6], PetscScalar fe[6])
@@ -58,7 +52,7 @@ static PetscErrorCode AddFacetForce(LamMacro macro, const LamMacroFacet *facet, 
   for (PetscInt q = 0; q < LAM_FACET_POINTS; q++) {
     PetscReal N[3], dN[3], weight, tau[2] = {0, 0}, t[2];
     LamMacroFacetShape(q, N, dN, &weight);
-    weight *= Around(macro, N, X);
+    weight *= LamMacroAround(macro, N, X);
     for (PetscInt a = 0; a < 6; a++) tau[a % 2] += dN[a / 2] * X[a];
     for (PetscInt i = 0; i < 2; i++)
       t[i] = boundary->follower ? sense * (T[2 * i] * tau[0] + T[2 * i + 1] * tau[1])
@@ -128,7 +122,7 @@ static PetscErrorCode AddFacetTangent(LamMacro macro, const LamMacroFacet *facet
     LamMacroFacetShape(q, N, dN, &weight);
     for (PetscInt a = 0; a < 6; a++) tau[a % 2] += dN[a / 2] * X[a];
     for (PetscInt row = 0; row < 6; row++) {
-      const PetscReal *t = &T[2 * (row % 2)], share = sense * weight * N[row / 2], around = Around(macro, N, X);
+      const PetscReal *t = &T[2 * (row % 2)], share = sense * weight * N[row / 2], around = LamMacroAround(macro, N, X);
       for (PetscInt column = 0; column < 6; column++)
         Ke[6 * row + column] -= share * around * dN[column / 2] * t[column % 2];
       for (PetscInt b = 0; b < 3 && macro->axisymmetric; b++) /* by the radius */

@@ -6,9 +6,9 @@
 
     G_fI = int [ N_I m_f + grad N_I . k_f grad psi_f ] dV - int_surface N_I g_f (psi_out - psi_f) dA = 0
 
-  in the reference. At nodes of sides without resistance psi_f is prescribed, and G_fI is what flows in. The lumens'
-  water depends on the potentials, so with the matrices of sealed.c, E = dR/dpsi, H = dG/dq, D = dG/dpsi, and the
-  pressures eliminated element by element, Newton's method has
+  in the reference, dV and dA around the whole circle of an axisymmetric body. At nodes of sides without resistance
+  psi_f is prescribed, and G_fI is what flows in. The lumens' water depends on the potentials, so with the matrices of
+  sealed.c, E = dR/dpsi, H = dG/dq, D = dG/dpsi, and the pressures eliminated element by element, Newton's method has
 
     ( A'  B  ) ( du   )     ( f' )     B = -C^T K^-1 E    C' = -H K^-1 C
     ( C'  D' ) ( dpsi ) = - ( G' )     D' = D - H K^-1 E  G' = G - H K^-1 R
@@ -278,7 +278,7 @@ static PetscErrorCode AddFacet(LamMacro macro, const LamMacroFacet *facet, const
     PetscReal N[3], dN[3], w, tau[2] = {0, 0};
     LamMacroFacetShape(q, N, dN, &w);
     for (PetscInt k = 0; k < 6; k++) tau[k % 2] += dN[k / 2] * X[k];
-    w *= PetscSqrtReal(PetscSqr(tau[0]) + PetscSqr(tau[1]));
+    w *= PetscSqrtReal(PetscSqr(tau[0]) + PetscSqr(tau[1])) * LamMacroAround(macro, N, X);
     for (PetscInt f = 0; f < count; f++) {
       const PetscReal g = LamMacroPrescribes(flow, surface, f) ? 0 : w * Conductance(flow, surface, length, f);
       PetscReal over = -flow->outside;

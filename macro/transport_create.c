@@ -3,6 +3,8 @@
 */
 #include "transport_impl.h"
 
+#define ON_AXIS 1e-9 /* of the body's length: more than rounding, less than an element */
+
 static PetscErrorCode NumberPotentials(LamMacro macro, LamMacroFlow *flow)
 {
   PetscSection section;
@@ -16,6 +18,28 @@ static PetscErrorCode NumberPotentials(LamMacro macro, LamMacroFlow *flow)
   PetscCall(PetscSectionSetUp(section));
   PetscCall(DMSetLocalSection(flow->dm, section));
   PetscCall(PetscSectionDestroy(&section));
+  PetscFunctionReturn(0);
+}
+
+/* The axis of an axisymmetric body is none of its surfaces. */
+static PetscErrorCode CheckSurfaces(LamMacro macro)
+{
+  const LamTransportSpec *spec = &macro->scene->process.transport;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; macro->axisymmetric && k < spec->surface_count; k++) {
+    const PetscInt set = LamMacroFindSet(macro, spec->surface[k].on);
+    PetscReal radius = 0, X[6], sense;
+    for (PetscInt i = 0; i < macro->facet_count; i++) {
+      if (!(macro->facets[i].sets >> set & 1)) continue;
+      PetscCall(LamMacroFacetNodes(macro, &macro->facets[i], X, &sense));
+      for (int a = 0; a < 3; a++) radius = PetscMax(radius, X[2 * a]);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &radius, 1, MPIU_REAL, MPIU_MAX, macro->comm));
+    LamMacroRequire(radius > ON_AXIS, macro, &spec->surface[k].place,
+                    "process.transport.surface: on: %s: is the axis of the body, where no water comes in; leave it out",
+                    spec->surface[k].on);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -129,6 +153,7 @@ PetscErrorCode LamMacroFlowCreate(LamMacro macro)
   PetscCall(PetscCalloc1(macro->point_count * flow->spec.count, &flow->at));
   PetscCall(DMSetMatType(flow->dm, MATAIJ));
   PetscCall(DMCreateMatrix(flow->dm, &flow->own));
+  PetscCall(CheckSurfaces(macro));
   PetscCall(MarkHeld(macro, flow));
   PetscCall(CreateCouplings(macro, flow));
   PetscCall(LamMacroFactorise(macro, "macro_flow_", &flow->own_solver));

@@ -197,7 +197,7 @@ static void PrintBodyHeader(const LamBodyStudy *study, const LamBodyState *state
 {
   const LamMacroStep *step = &state->step;
 
-  printf("Turgor: least, mean and largest; reactions in N per mm of thickness.\n");
+  printf("Turgor: least, mean and largest; reactions in %s.\n", LamFE2ForceName(&study->fe2));
   printf("%10s %8s %8s %8s %8s %7s %7s %7s %8s", "time", "temp.", "turgor", "turgor", "turgor", "water", "lamella",
          "walls", "load");
   LamFE2PrintSides(&study->fe2, step, PETSC_TRUE);

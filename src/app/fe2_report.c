@@ -113,6 +113,11 @@ static void PrintTissues(const LamFE2Tissues *tissues)
   }
 }
 
+const char *LamFE2ForceName(const LamFE2Run *run)
+{
+  return run->scene->macro.symmetry == LAM_AXISYMMETRIC ? "N" : "N per mm of thickness";
+}
+
 #define BALANCE 1e-9 /* of the largest reaction: equilibrium holds to this (macro/stepping.c), less is noise */
 
 void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names)
@@ -137,7 +142,7 @@ static void PrintHeader(const LamFE2Run *run, const LamMacroStep *step)
   PrintTissues(&run->tissues);
   printf("Reactions in %s; solving: seconds of it in RVE solves; residuals relative to the forces of the elements.\n"
          "%4s %7s",
-         run->scene->macro.symmetry == LAM_AXISYMMETRIC ? "N" : "N per mm of thickness", "step", "load");
+         LamFE2ForceName(run), "step", "load");
   LamFE2PrintSides(run, step, PETSC_TRUE);
   printf(" %5s %8s %8s %8s %8s %8s  %s\n", "iter.", "queries", "hits", "solves", "seconds", "solving", "residuals");
 }

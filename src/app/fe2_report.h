@@ -22,7 +22,9 @@ json_t *LamFE2StepToJSON(const LamFE2Run *run, const LamMacroStep *step, PetscRe
 /* Prints the row (for the first step with the header) or the JSON object of a step; once, a warning that the tissue
    localises. */
 PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroStep *step, PetscReal peak_memory);
-/* The columns of the reactions: names, or numbers in N per mm of thickness. */
+/* The unit of reactions: "N per mm of thickness", of an axisymmetric body "N". */
+const char *LamFE2ForceName(const LamFE2Run *run);
+/* The columns of the reactions: names, or numbers. */
 void LamFE2PrintSides(const LamFE2Run *run, const LamMacroStep *step, PetscBool names);
 /* Prints summary and totals. */
 PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run, const LamConsole *console);

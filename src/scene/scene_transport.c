@@ -106,9 +106,6 @@ PetscErrorCode LamSceneBuildTransport(const LamNode *process, LamScene *scene)
   spec->given = PETSC_TRUE;
   LamSceneCheckName(scene->has_macro, block,
                     "is for a body, but there is no block macro; leave it out, or write that block");
-  LamSceneCheckName(scene->macro.symmetry != LAM_AXISYMMETRIC, block,
-                    "moves water through bodies in plane strain only, and this one is axisymmetric; leave it out, so "
-                    "that each point meets the surroundings directly, or write symmetry: plane_strain");
   LamSceneCheckName(scene->process.has_water, block,
                     "moves the water of cells, but there is no process.water; write that block");
   PetscCall(LamSceneFill(block, &scene->scales, LamTransportSpec, spec));

@@ -1,6 +1,7 @@
 /* Gmsh meshes: any file becomes a mesh or is refused as the user's mistake, in words. */
 #include "fuzz.h"
 #include "macro_impl.h"
+#include "mesh_sources.h"
 #include <stdlib.h>
 
 void __lsan_disable(void) __attribute__((weak)); /* of the leak checker, where there is one */

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "macro_impl.h"
+#include "mesh_sources.h"
 
 #define FORMAT_22 "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
 #define NAMES "$PhysicalNames\n1\n1 1 \"base\"\n$EndPhysicalNames\n"

@@ -21,26 +21,40 @@
 
 /* ---- series ---- */
 
-/* d psi_c / dV of the slab's tissue at the turgor of the start: free across the slab, held along it. */
-static PetscReal Modulus(const Told *told)
+/* d psi_c / dV of the tissue at the turgor of the start, held but for F11 (count 1), or F11 = F33 (count 2). */
+static PetscReal ModulusOf(const Told *told, int count)
 {
   const LamWaterSpec *water = &told->scene->process.water;
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .turgor = told->scene->turgor};
   Synthetic material = {.mu = 1, .lambda = 2, .phi = 0.7, .c = 0.05};
   LamResponse r;
 
+  PetscReal pull = 0, stiffness = 1, by_turgor = 0;
   for (int it = 0; it < 20; it++) {
+    for (int k = 0; k < count; k++) load.F[8 * k] -= pull / stiffness;
     assert_int_equal(LamResponseInit(&load, &r), 0);
     SyntheticEvaluate(&material, &load, &r);
-    load.F[0] -= r.P[0] / r.tangent[0];
+    pull = stiffness = by_turgor = 0;
+    for (int k = 0; k < count; k++) {
+      pull += r.P[8 * k];
+      by_turgor += r.P_turgor[8 * k];
+      for (int l = 0; l < count; l++) stiffness += r.tangent[72 * k + 8 * l];
+    }
   }
-  const PetscReal compliance = -r.energy_turgor2 + r.P_turgor[0] * r.P_turgor[0] / r.tangent[0];
+  const PetscReal compliance = -r.energy_turgor2 + by_turgor * by_turgor / stiffness;
   const PetscReal room = -r.energy_turgor * (1 - water->non_osmotic);
 
   return 1 / compliance + water->reflection * water->osmotic / room;
 }
 
+/* Of a slab: free across it. */
+static PetscReal Modulus(const Told *told)
+{
+  return ModulusOf(told, 1);
+}
+
 typedef struct {
+  int axis; /* across the slab */
   PetscReal modulus, exchange[2], conductivity[2]; /* of the potentials */
   PetscReal largest;                               /* error over the change of the bath */
   PetscInt states;
@@ -78,7 +92,7 @@ static void Compare(Told *told)
 
     assert_int_equal(LamMacroGetPoint(told->macro, p, &point), 0);
     const PetscReal remains = (point.field[LAM_POINT_POTENTIAL] + sigma * state->outside) / (state->outside - was);
-    s->largest = fmax(s->largest, fabs(remains - Remains(s, point.place[0], state->time)));
+    s->largest = fmax(s->largest, fabs(remains - Remains(s, point.place[s->axis], state->time)));
   }
 }
 
@@ -98,6 +112,7 @@ static Series FollowOn(const char text[], PetscBool triangles)
   const LamTransportSpec *spec = &told.scene->process.transport;
 
   assert_near(told.scene->scales.macro_length, 5e-3, 1e-12);
+  s.axis = told.scene->macro.symmetry == LAM_AXISYMMETRIC;
   s.modulus = Modulus(&told);
   s.conductivity[0] = spec->apoplast;
   s.conductivity[1] = spec->cell_to_cell;
@@ -176,6 +191,23 @@ TEST(both_paths_carry_together_what_they_carry_alone)
       Follow(SLAB("  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
                   "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
                   "  transport: {apoplast: 4e-11 m^2/s/MPa, cell_to_cell: 6e-11 m^2/s/MPa, " EXPOSED "}\n"));
+
+  assert_int_equal(s.states, 10);
+  assert_true(s.largest < 0.005);
+}
+
+/* A cylinder between a smooth bottom and a bath on top, held at its rim: along its axis it is a slab. */
+TEST(turgor_diffuses_along_the_axis_of_a_cylinder)
+{
+  const Series s = Follow("macro:\n"
+                          "  symmetry: axisymmetric\n"
+                          "  mesh: {box: [5 mm, 5 mm], elements: [2, 10]}\n"
+                          "  boundary:\n"
+                          "    - {on: bottom, symmetry: true}\n"
+                          "    - {on: right, symmetry: true}\n"
+                          "process:\n  duration: 2 day\n  output: 0.2 day\n" A_LITTLE
+                          "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
+                          "  transport: {apoplast: 1e-10 m^2/s/MPa, surface: [{on: top}]}\n");
 
   assert_int_equal(s.states, 10);
   assert_true(s.largest < 0.005);
@@ -281,19 +313,18 @@ TEST(nothing_moves_without_a_path_or_without_membranes)
   for (PetscInt k = 0; k < none.count; k++) assert_near(none.bodies[k].water, 1, 1e-12);
 }
 
-/* A skin that is the only resistance: the body follows the bath with one time. */
-TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
+/* A skin that is the only resistance: the body follows the bath with one time. area: of the skin over the volume, in
+   1/macro length; free: components of F that are. */
+static void FollowBath(const char text[], PetscReal area, int free)
 {
   TOLD body;
 
-  ReadScene(SLAB("  duration: 10 h\n  output: 1 h\n" A_LITTLE
-                 "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"
-                 "  transport: {apoplast: 1e-5 m^2/s/MPa, surface: [{on: right, conductance: 1e-7 m/s/MPa}]}\n"),
-            1e-7, &body);
+  ReadScene(text, 1e-7, &body);
   RunBody(&body);
+  if (body.reason != LAM_PROCESS_DONE) fail_msg("%s", body.message);
   const PetscReal g = body.scene->process.transport.surface[0].conductance * body.scene->scales.length /
                       body.scene->scales.macro_length;
-  const PetscReal rate = g * Modulus(&body);
+  const PetscReal rate = area * g * ModulusOf(&body, free);
   const PetscReal all = LastBody(&body)->water - 1;
 
   for (PetscInt k = 0; k < body.count; k++) {
@@ -303,6 +334,24 @@ TEST(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin)
     assert_near(body.bodies[k].water_balance, 0, 1e-10);
   }
 }
+
+#define SKIN                                                                                                           \
+  "  duration: 10 h\n  output: 1 h\n" A_LITTLE                                                                         \
+  "  water: {permeability: 1e-5 m/s/MPa, osmotic_pressure: 0.5 MPa, non_osmotic: 0.1}\n"                               \
+  "  transport: {apoplast: 1e-5 m^2/s/MPa, surface: [{on: right, conductance: 1e-7 m/s/MPa}]}\n"
+
+TEST_IS(behind_a_skin_the_whole_slab_follows_the_bath_at_the_rate_of_the_skin, FollowBath(SLAB(SKIN), 1, 1));
+
+/* Its rim has twice the area over the volume. */
+TEST_IS(behind_a_skin_a_cylinder_follows_the_bath_twice_as_fast_as_a_slab,
+        FollowBath("macro:\n"
+                   "  symmetry: axisymmetric\n"
+                   "  mesh: {box: [5 mm, 0.5 mm], elements: [4, 1]}\n"
+                   "  boundary:\n"
+                   "    - {on: bottom, symmetry: true}\n"
+                   "    - {on: top, symmetry: true}\n"
+                   "process:\n" SKIN,
+                   2, 2));
 
 /* Air of a relative humidity of 0.995 is as a bath of 0.68 MPa. */
 TEST(a_block_dries_from_its_skin_inwards_and_ends_in_equilibrium_with_the_air)
