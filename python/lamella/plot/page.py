@@ -246,9 +246,8 @@ def columns(labels, width, size=SMALL, sample=2.0):
     """Of a legend that fits into this width, points."""
     each = [size * (0.54 * len(label.replace("$", "").replace("_{", "").replace("}", "")) + sample + 1.7)
             for label in labels]
-    for count in range(len(each), 1, -1):  # filled column by column
-        rows = -(-len(each) // count)
-        if sum(max(each[k:k + rows]) for k in range(0, len(each), rows)) <= width:
+    for count in range(len(each), 1, -1):  # as matplotlib fills them
+        if sum(max(column) for column in np.array_split(each, count)) <= width:
             return count
     return 1
 
