@@ -1,4 +1,4 @@
-# Tissue files of label images, against the tessellation that the image shows: areas, neighbours, junctions, porosity; and
+# slow: Tissue files of label images, against the tessellation that the image shows: areas, neighbours, junctions, porosity; and
 # what pictures lack, told in words.
 . "$(dirname "$0")/common.sh"
 package scipy PIL

@@ -1,4 +1,4 @@
-# lamella plot of results with cells of any shape: air is no gap, forces between cells are in balance with the stress, images
+# slow: lamella plot of results with cells of any shape: air is no gap, forces between cells are in balance with the stress, images
 # across the period, the outline at rest has no air within, slices of tables turn no hexagon.
 . "$(dirname "$0")/common.sh"
 package h5py matplotlib scipy

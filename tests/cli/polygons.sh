@@ -1,4 +1,4 @@
-# Hexagons written as polygons, in cells that begin at any corner: their responses are those of rve.cells to 1e-10, by
+# slow: Hexagons written as polygons, in cells that begin at any corner: their responses are those of rve.cells to 1e-10, by
 # each law; and what a tissue file must not say.
 . "$(dirname "$0")/common.sh"
 

@@ -1,4 +1,4 @@
-# Many states in parallel processes, threads, types: what several of them do at a time has the numbers of one.
+# slow: Many states in parallel processes, threads, types: what several of them do at a time has the numbers of one.
 . "$(dirname "$0")/common.sh"
 package
 

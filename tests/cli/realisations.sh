@@ -1,4 +1,4 @@
-# lamella rve --realisations: means and deviations are those of the single responses; a second call goes on; the fit,
+# slow: lamella rve --realisations: means and deviations are those of the single responses; a second call goes on; the fit,
 # isotropy and what an accuracy needs, against cases that are known; failures are told; refusals; a picture.
 . "$(dirname "$0")/common.sh"
 package scipy

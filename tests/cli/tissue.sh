@@ -1,4 +1,4 @@
-# lamella tissue: the cells have the statistics that were asked for; the same seed gives the same file; refusals; pictures.
+# slow: lamella tissue: the cells have the statistics that were asked for; the same seed gives the same file; refusals; pictures.
 . "$(dirname "$0")/common.sh"
 
 package scipy
