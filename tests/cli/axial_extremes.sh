@@ -1,4 +1,4 @@
-# F33 of 0.5 and 2 in tissue that is bonded or in contact: the answers and certificates of docs/results/extremes.md
+# slow: F33 of 0.5 and 2 in tissue that is bonded or in contact: the answers and certificates of docs/results/extremes.md
 . "$(dirname "$0")/common.sh"
 set -e
 

@@ -1,4 +1,4 @@
-# process of an axisymmetric body: a cylinder in a bath, whose water comes in around it, directly and from a database; its
+# slow: process of an axisymmetric body: a cylinder in a bath, whose water comes in around it, directly and from a database; its
 # forces are those of the whole circle, and its axis is no surface
 . "$(dirname "$0")/common.sh"
 set -e
