@@ -416,7 +416,8 @@ static void PrintMacro(const Check *check)
     printf("elements of %s", macro->gmsh);
   else
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
-  printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
+  printf(", %s%" PetscInt_FMT " load steps%s\n", macro->symmetry == LAM_AXISYMMETRIC ? "axisymmetric, " : "",
+         macro->steps, macro->inflate ? " after inflation" : "");
   PrintRegions(check);
   if (plan->macro_states)
     PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->cost.point);
