@@ -22,8 +22,8 @@ static void CheckArguments(const char *cmname, int length, int ndi, int nshr, in
     TissueFail("material %.*s: CalculiX takes stress in another frame from a UMAT; write @LAMELLAUMAT_CALCULIX@NAME",
                length, cmname);
   if (ndi != 3 || (nshr != 1 && nshr != 3))
-    TissueFail("material %.*s: %d normal and %d shear components; take elements of plane strain, or solids", length, cmname, ndi,
-               nshr);
+    TissueFail("material %.*s: %d normal and %d shear components; take elements of plane strain, or solids", length,
+               cmname, ndi, nshr);
   if (nstatv < TISSUE_VARIABLES)
     TissueFail("material %.*s: %d state variables; write *DEPVAR and %d below it", length, cmname, nstatv,
                TISSUE_VARIABLES);

@@ -3,14 +3,7 @@
 . "$(dirname "$0")/common.sh"
 set -e
 
-cat >soak.yaml <<'YAML'
-version: 1
-rve:
-  cell: {apothem: 75 um, wall_thickness: 11.25 um}
-  wall: {law: fibre_mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa, C4: 1 MPa}
-  interface: {law: bonded}
-  turgor: {mode: prescribed, pressure: 0.05 MPa}
-  mesh: {along: 4, through: 1}
+tissue turgor='mode: prescribed, pressure: 0.05 MPa' >soak.yaml <<'YAML'
 macro:
   symmetry: axisymmetric
   mesh: {box: [5 mm, 2 mm], elements: [2, 1]}
