@@ -22,7 +22,8 @@ static LamLoad PointLoad(LamMacro macro, const LamMacroElement *element, PetscIn
   const PetscReal *dN = LamMacroGradient(macro, element, q), *hoop = LamMacroHoop(macro, element, q);
   LamLoad load = {.F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
                   .turgor = macro->turgor * macro->turgor_share[point],
-                  .cohesion = macro->lamella * macro->cohesion[point]};
+                  .cohesion = macro->lamella * macro->cohesion[point],
+                  .duration = macro->duration};
 
   load.turgor += LamMacroTurgorChange(macro, element, point);
   for (PetscInt a = 0; a < element->kind->nodes; a++) {

@@ -74,6 +74,8 @@ PetscErrorCode LamMacroBalance(LamMacro macro, const LamMacroInstant *instant, c
   macro->turgor = instant->turgor;
   macro->lamella = instant->lamella;
   macro->walls = instant->walls;
+  macro->time = instant->time;
+  macro->duration = macro->relaxes ? PetscMax(0, instant->time - macro->accepted_time) : 0;
   PetscCall(LamMacroSetLoadFactor(macro, instant->load));
   PetscCall(VecGetLocalSize(macro->trial, &n));
   PetscCall(VecGetArray(macro->trial, &values));

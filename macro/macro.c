@@ -22,6 +22,8 @@ PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene)
              "%s: has no block `macro`, which describes the body", scene->path);
   PetscCall(LamMacroBoundaryNames(&scene->macro, &macro->step));
   macro->scene = scene;
+  macro->relaxes = LamWallsRelax(&scene->micro);
+  macro->duration = macro->relaxes ? PETSC_INFINITY : 0;
   PetscFunctionReturn(0);
 }
 

@@ -176,6 +176,8 @@ PetscErrorCode LamMacroAccept(LamMacro macro)
   }
   LamMacroObstaclesAccept(macro);
   PetscCall(LamResponderAccept(macro->responder));
+  macro->accepted_time = macro->time;
+  if (macro->relaxes) PetscCall(LamMacroForget(macro)); /* the same load is now one of another past */
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,9 @@
   Errors of x and V are controlled, of V in the mean over the body's volume. Turgor and displacement follow: equilibrium
   is solved again for every report and event search, so neither interpolation in time nor of responses limits the steps.
 
+  Walls with memory see steps in which their elastic stress goes straight (relaxation.h), each from the state accepted
+  before: orders are at most 2, steps end at reports, and errors of the displacement are controlled, too.
+
   Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363-396.
 */
 #include "body_impl.h"
@@ -25,8 +28,8 @@
 #include <sundials/sundials_nonlinearsolver.h>
 #include <sundials/sundials_types.h>
 
-enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6, KINETIC_ITERATIONS = 30 };
-#define KINETIC_EXACT 1e-14
+enum { MAX_STEPS = 100000, MAX_FAILURES = 25, MAX_RESTARTS = 3, MAX_HALVINGS = 6 };
+#define SMALL 1e-3         /* displacement in macro lengths: errors of smaller ones are relative to this */
 #define LEAST_ADVANCE 1e-9 /* fraction of the duration; a restart that advances less counts towards MAX_RESTARTS */
 
 /* Positions of the unknowns behind the kinetic states in this rank's y; -1: not an unknown. */
@@ -38,7 +41,7 @@ typedef struct {
   LamIntegrator base;
   LamBody body;
   Layout layout;
-  PetscInt total;                   /* unknowns of all ranks */
+  PetscInt total, displacements;    /* unknowns of all ranks, and of these displacements */
   PetscReal x[LAM_PROCESS_KINETIC]; /* of the last step's solution, on all ranks */
   PetscBool pending;                /* a solution has not been accepted yet */
   PetscReal c;                      /* leading coefficient of the last step */
@@ -123,29 +126,6 @@ static PetscErrorCode Unpack(Integration *in, PetscReal time, const PetscReal y[
 
 /* ---- an implicit step ---- */
 
-/* Solves for x of one law, with x' = slope + c (x - start), by Newton's method; at most two states. */
-static PetscBool SolveLaw(const LamKinetics *law, PetscReal temperature, PetscReal c, const PetscReal start[],
-                          const PetscReal slope[], PetscReal x[])
-{
-  const PetscInt n = LamKineticsStates(law);
-
-  for (PetscInt it = 0; it < KINETIC_ITERATIONS; it++) {
-    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES] = {{0}}, r[2] = {0}, d[2];
-
-    LamKineticsRates(law, temperature, x, rate, J);
-    for (PetscInt i = 0; i < n; i++) r[i] = slope[i] + c * (x[i] - start[i]) - rate[i];
-    const PetscReal a = c - J[0][0], b = -J[0][1], e = -J[1][0], f = n > 1 ? c - J[1][1] : 1;
-    const PetscReal determinant = n > 1 ? a * f - b * e : a;
-
-    d[0] = n > 1 ? (f * r[0] - b * r[1]) / determinant : r[0] / a;
-    d[1] = n > 1 ? (a * r[1] - e * r[0]) / determinant : 0;
-    for (PetscInt i = 0; i < n; i++) x[i] -= d[i];
-    if (!isfinite(x[0] + d[1])) return PETSC_FALSE;
-    if (PetscAbsReal(d[0]) + PetscAbsReal(d[1]) <= KINETIC_EXACT) return PETSC_TRUE;
-  }
-  return PETSC_TRUE; /* to rounding */
-}
-
 static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c, const PetscReal predicted[],
                                     const PetscReal rates[], PetscBool *ok)
 {
@@ -158,7 +138,7 @@ static PetscErrorCode SolveKinetics(Integration *in, PetscReal time, PetscReal c
     const PetscInt first = LAM_KINETIC_STATES * k, at = in->base.state[first];
 
     if (at < 0) continue; /* states of a law are contiguous */
-    if (!SolveLaw(&process->spec->kinetics[k], temperature, c, &predicted[at], &rates[at], &in->x[first]))
+    if (!LamKineticsStep(&process->spec->kinetics[k], temperature, c, &predicted[at], &rates[at], &in->x[first]))
       *ok = PETSC_FALSE;
   }
   PetscCallMPI(MPI_Bcast(ok, 1, MPIU_BOOL, 0, in->body->comm));
@@ -312,7 +292,9 @@ static int Weights(N_Vector y_vector, N_Vector weight, void *ctx)
   const PetscInt *state = in->base.state;
   PetscReal *w = N_VGetArrayPointer(weight);
 
-  N_VConst(1, weight); /* of algebraic unknowns errors are suppressed; that of the inflow is that of V */
+  N_VConst(1, weight); /* next to nothing; and of algebraic unknowns errors are suppressed without a history */
+  for (PetscInt k = l->u; k < in->base.n && body->process->has_history; k++)
+    w[k] = sqrt(all / (PetscReal)in->displacements) / (relative * (PetscAbsReal(y[k]) + SMALL));
   for (PetscInt k = 0; k < LAM_PROCESS_KINETIC; k++)
     if (state[k] >= 0) w[state[k]] = sqrt(all) / (relative * (PetscAbsReal(y[state[k]]) + 1e-3));
   for (PetscInt p = 0; p < body->sizes.points && l->water >= 0; p++)
@@ -401,7 +383,9 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   base->event_count = LamBodyListEvents(body, base->events);
   LayOut(in);
   in->total = base->n;
+  in->displacements = base->n - in->layout.u;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->total, 1, MPIU_INT, MPI_SUM, body->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &in->displacements, 1, MPIU_INT, MPI_SUM, body->comm));
   base->y = N_VNew_Parallel(body->comm, base->n, in->total, base->context);
   PetscCheck(base->y, PETSC_COMM_SELF, PETSC_ERR_MEM, "SUNDIALS: no memory for a vector");
   base->yp = N_VClone(base->y);
@@ -412,10 +396,11 @@ static PetscErrorCode Create(LamBody body, Integration *in)
   PetscCall(StartRates(in));
   PetscCall(LamIntegratorStart(base, Residual, Roots, in));
   LamCallSUN(IDAWFtolerances(base->ida, Weights));
-  LamCallSUN(IDASetSuppressAlg(base->ida, SUNTRUE));
+  if (!in->body->process->has_history) LamCallSUN(IDASetSuppressAlg(base->ida, SUNTRUE));
   LamCallSUN(
       IDASetMaxStep(base->ida, LamProcessOutputInterval(body->process))); /* transient events must not be missed */
   LamCallSUN(IDASetMaxConvFails(base->ida, MAX_FAILURES));
+  if (in->body->process->has_history) LamCallSUN(IDASetMaxOrd(base->ida, 2)); /* that of the history of walls */
   PetscCall(CreateSolver(in));
   LamCallSUN(IDASetNonlinearSolver(base->ida, in->solver));
   PetscFunctionReturn(0);
@@ -533,19 +518,22 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
-  while (flag == IDA_SUCCESS && *ok && t < process->segment.end) {
+  while ((flag == IDA_SUCCESS || flag == IDA_TSTOP_RETURN) && *ok && t < process->segment.end) {
     if (++body->steps > MAX_STEPS) {
       PetscCall(PetscStrncpy(process->trouble, "its steps of time are too short to come on", sizeof(process->trouble)));
       *ok = PETSC_FALSE;
       PetscFunctionReturn(0);
     }
     process->trouble[0] = '\0';
+    if (process->has_history) /* a state in between would be of another history */
+      LamCallSUN(IDASetStopTime(in->base.ida, PetscMin(process->next_output, process->segment.end)));
     flag = IDASolve(in->base.ida, process->segment.end, &t, in->base.y, in->base.yp, IDA_ONE_STEP);
     PetscCall(in->error);
     if (flag < 0) break;
     process->counts.steps++;
     PetscCall(TakeStep(in, t));
-    PetscCall(ReportUpTo(in, t, ok));
+    if (process->has_history && body->evaluated != t) PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
+    if (*ok) PetscCall(ReportUpTo(in, t, ok));
     if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->base.y)));
     if (process->stopped) break;
   }

@@ -32,7 +32,8 @@ LamMacroInstant LamBodyInstant(LamBody body, PetscReal time)
   LamMacroInstant instant = {.load = LamRampAt(&segment->load, elapsed),
                              .turgor = 1,
                              .lamella = body->now.factor[LAM_CHANGING_LAMELLA].value,
-                             .walls = body->now.walls};
+                             .walls = body->now.walls,
+                             .time = time};
 
   if (!body->process->spec->has_water && turgor != 0) instant.turgor = LamRampAt(&segment->turgor, elapsed) / turgor;
   return instant;

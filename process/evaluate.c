@@ -163,6 +163,7 @@ PetscErrorCode LamProcessAccept(LamProcess process)
     PetscCall(LamProcessEvaluate(process, tissue->time, tissue->x, tissue->F, tissue->turgor, &e));
   PetscCall(LamResponderAccept(process->responder));
   process->accepted = tissue->time;
+  if (process->has_history) process->last_known = PETSC_FALSE; /* the same question is now one of another past */
   PetscFunctionReturn(0);
 }
 

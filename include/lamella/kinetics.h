@@ -60,6 +60,9 @@ LAM_EXPORT PetscReal LamKineticsFactor(const LamKinetics *kinetics, PetscReal t,
 /* rate: dx_i/dt at temperature T; J[i][j]: its derivative with respect to x_j. */
 LAM_EXPORT void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const PetscReal x[],
                                  PetscReal rate[], PetscReal J[LAM_KINETIC_STATES][LAM_KINETIC_STATES]);
+/* Solves x' = slope + c (x - start) for x, from x, the equation of an implicit step; false: it has no solution. */
+LAM_EXPORT PetscBool LamKineticsStep(const LamKinetics *kinetics, PetscReal temperature, PetscReal c,
+                                     const PetscReal start[], const PetscReal slope[], PetscReal x[]);
 /* The largest factor at any time. */
 LAM_EXPORT PetscReal LamKineticsLargest(const LamKinetics *kinetics);
 /* True if two laws give the same factor at all times. */

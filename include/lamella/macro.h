@@ -179,6 +179,7 @@ typedef struct {
   PetscReal turgor;  /* fraction of the points' turgor; 1 if turgor follows from water */
   PetscReal lamella; /* factor of the points' cohesion */
   PetscReal walls;   /* factor of the moduli of their walls */
+  PetscReal time;    /* s, from 0 at LamMacroStart, before which everything was for ever; for walls with memory */
   /* with transport */
   PetscReal outside;                        /* water potential at the surface */
   PetscReal membrane[LAM_MACRO_POTENTIALS]; /* conductance of the membranes there, in macro lengths; where there are */

@@ -25,23 +25,13 @@
 #define LAM_RVE_WALL_MEMORY_H
 
 #include "element.h"
+#include "relaxation.h"
 
 enum { LAM_MEMORY_COMPONENTS = 4 };
 /* Stress and strain at the Gauss points of an element: S_e and E, or H_i and E_i. */
 typedef struct {
   PetscReal S[LAM_MEMORY_COMPONENTS][LAM_GAUSS], E[LAM_MEMORY_COMPONENTS][LAM_GAUSS];
 } LamMemoryPair;
-
-/* The coefficients of a step. */
-typedef struct {
-  PetscInt terms;
-  PetscReal scale;
-  PetscReal share[LAM_RELAXATION_TERMS], decay[LAM_RELAXATION_TERMS], phi[LAM_RELAXATION_TERMS];
-  PetscReal psi[LAM_RELAXATION_TERMS];     /* (1 - phi)/x */
-  PetscReal loss[LAM_RELAXATION_TERMS][3]; /* integrals over s in [0, x] of e^2, e f, f^2, e = exp(-s), f = (1 - e)/x */
-} LamMemoryStep;
-/* duration: from 0 (the instantaneous response) to infinite (the long-term one). */
-LamMemoryStep LamMemoryStepOf(const LamRelaxation *relaxation, PetscReal duration);
 
 /* S_e over `unit` and E of positions u, and the energy of matrix and fibres, which is returned. */
 PetscReal LamElementElastic(const LamElementGeometry *geometry, const LamWallLaw *law, const LamWall *wall,

@@ -6,6 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+enum { STEP_ITERATIONS = 30 };
+#define STEP_EXACT 1e-14
+
 #define NAME(symbol, name) name,
 const char *const LamKineticLawNames[] = {LAM_KINETIC_LAWS(NAME)};
 
@@ -98,6 +101,29 @@ void LamKineticsRates(const LamKinetics *kinetics, PetscReal temperature, const 
   default:
     break;
   }
+}
+
+/* Newton's method; at most two states. */
+PetscBool LamKineticsStep(const LamKinetics *law, PetscReal temperature, PetscReal c, const PetscReal start[],
+                          const PetscReal slope[], PetscReal x[])
+{
+  const PetscInt n = LamKineticsStates(law);
+
+  for (PetscInt it = 0; it < STEP_ITERATIONS; it++) {
+    PetscReal rate[LAM_KINETIC_STATES] = {0}, J[LAM_KINETIC_STATES][LAM_KINETIC_STATES] = {{0}}, r[2] = {0}, d[2];
+
+    LamKineticsRates(law, temperature, x, rate, J);
+    for (PetscInt i = 0; i < n; i++) r[i] = slope[i] + c * (x[i] - start[i]) - rate[i];
+    const PetscReal a = c - J[0][0], b = -J[0][1], e = -J[1][0], f = n > 1 ? c - J[1][1] : 1;
+    const PetscReal determinant = n > 1 ? a * f - b * e : a;
+
+    d[0] = n > 1 ? (f * r[0] - b * r[1]) / determinant : r[0] / a;
+    d[1] = n > 1 ? (a * r[1] - e * r[0]) / determinant : 0;
+    for (PetscInt i = 0; i < n; i++) x[i] -= d[i];
+    if (!isfinite(x[0] + d[1])) return PETSC_FALSE;
+    if (PetscAbsReal(d[0]) + PetscAbsReal(d[1]) <= STEP_EXACT) return PETSC_TRUE;
+  }
+  return PETSC_TRUE; /* to rounding */
 }
 
 static PetscBool RatesAgree(const LamRate *one, const LamRate *other)

@@ -16,7 +16,7 @@ typedef struct {
 /* The load in the axes and units of the tissue: F Q. */
 static LamLoad ToTissue(const LamLoad *load, PetscReal angle, PetscReal stress)
 {
-  LamLoad own = {.turgor = load->turgor / stress, .cohesion = load->cohesion / stress};
+  LamLoad own = {.turgor = load->turgor / stress, .cohesion = load->cohesion / stress, .duration = load->duration};
   const PetscReal c = cos(angle), s = sin(angle);
 
   memcpy(own.F, load->F, sizeof(own.F));

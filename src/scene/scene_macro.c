@@ -249,9 +249,9 @@ PetscErrorCode LamSceneBuildMacro(const LamNode *root, LamScene *scene)
 
   PetscFunctionBeginUser;
   if (!block) PetscFunctionReturn(0);
-  LamSceneCheckName(!LamWallsRelax(&scene->micro), block,
-                    "this version of Lamella has walls with memory, rve.wall.relaxation, at a material point only: "
-                    "loads of a body have no time; leave one of them out");
+  LamSceneCheckName(!LamWallsRelax(&scene->micro) || LamNodeFind(root, "process"), block,
+                    "is loaded without time, on which walls with memory, rve.wall.relaxation, depend; write a block "
+                    "process, or leave one of them out");
   scene->has_macro = PETSC_TRUE;
   PetscCall(BuildMesh(LamNodeFind(block, "mesh"), scene));
   spec->inflate = (PetscBool)(scene->turgor != 0.0);

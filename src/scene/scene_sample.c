@@ -82,10 +82,6 @@ PetscErrorCode LamSceneBuildSample(const LamNode *root, LamScene *scene)
         LamSceneWarn(scene, block, LAM_MISTAKE_NAME, NULL,
                      "lamella build will refuse law: lamella, whose responses depend on history; leave it out, or "
                      "write law: bonded or contact"));
-  LamSceneCheckName(
-      !LamWallsRelax(&scene->micro), block,
-      "is of a table, which knows no time, on which walls with memory depend; for walls at once leave out "
-      "rve.wall.relaxation, for those in the end leave it out and write what is left of the moduli");
   scene->has_sample = PETSC_TRUE;
   sample->turgor_min = sample->turgor_max = scene->turgor;
   sample->accuracy = count ? 0.0 : scene->accuracy;

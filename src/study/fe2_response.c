@@ -2,6 +2,7 @@
   Responders of the material points of an FE2 run: RVE solves, a database, or both.
 */
 #include "fe2_run.h"
+#include <lamella/relaxing.h>
 #include "mesh_choice.h"
 #include "microstructure_compare.h"
 #include "lamella_zone.h"
@@ -124,6 +125,12 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
              "%s: macro.symmetry: axisymmetric: models of a lamella are those of one F33, which varies in such a body; "
              "choose --response direct",
              run->scene_path);
+  PetscCheck(!models || !LamWallsRelax(&tissue->scene.micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: models of a lamella know no time; choose --response direct", run->scene_path);
+  if (run->response != LAM_FE2_DIRECT) {
+    tissue->relaxation = tissue->scene.micro.relaxation;
+    tissue->scene.micro.relaxation.terms = 0;
+  }
   if (run->response == LAM_FE2_DATABASE)
     PetscCall(
         LamRefuseHistory(run->scene_path, &tissue->scene.micro, "a table",
@@ -138,6 +145,14 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
   else if (run->response == LAM_FE2_CACHE && !models)
     PetscCall(LamDatabaseCreateEmpty(&tissue->scene, &tissue->database));
   PetscFunctionReturn(0);
+}
+
+void LamFE2TakeMesh(const LamFE2Tissue *tissue, LamScene *scene)
+{
+  const LamRelaxation relaxation = scene->micro.relaxation;
+
+  scene->micro = tissue->scene.micro;
+  scene->micro.relaxation = relaxation;
 }
 
 PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
@@ -156,7 +171,7 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
   if (tissues->tissues[0].name[0])
     PetscCall(LamChooseMesh(run->scene, NULL));
   else
-    run->scene->micro = tissues->tissues[0].scene.micro;
+    LamFE2TakeMesh(&tissues->tissues[0], run->scene);
   if (tissues->turgor) PetscCall(LamMacroSetPointTissue(run->macro, tissues->turgor, tissues->cohesion));
   PetscFunctionReturn(0);
 }
@@ -244,7 +259,7 @@ static PetscErrorCode CountKept(const LamFE2Run *run, const LamFE2Tissue *tissue
 
   PetscFunctionBeginUser;
   *kept = tissue->points;
-  if (tissue->scene.micro.interface == LAM_INTERFACE_LAMELLA) PetscFunctionReturn(0);
+  if (LamHasHistory(&tissue->scene.micro)) PetscFunctionReturn(0);
   for (PetscInt t = 0; t < run->tissues.count; t++) share += (PetscReal)run->tissues.tissues[t].points;
   PetscCall(LamRVEStateCreate(tissue->rve, &state));
   PetscCall(LamRVEStateSize(state, &bytes));
@@ -309,6 +324,9 @@ PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResp
                                     tissue->scene.response.outside, QueryAccuracy(run, tissue), tissue->points,
                                     &tissue->cache));
   *responder = tissue->cache;
+  if (!tissue->relaxation.terms) PetscFunctionReturn(0);
+  PetscCall(LamRelaxingResponderCreate(tissue->cache, &tissue->relaxation, tissue->points, &tissue->relaxing));
+  *responder = tissue->relaxing;
   PetscFunctionReturn(0);
 }
 
@@ -339,6 +357,7 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run)
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue)
 {
   PetscFunctionBeginUser;
+  PetscCall(LamResponderDestroy(&tissue->relaxing));
   PetscCall(LamResponderDestroy(&tissue->cache));
   PetscCall(LamNodeChainDestroy(&tissue->chain));
   PetscCall(LamResponderDestroy(&tissue->direct));

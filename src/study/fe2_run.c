@@ -28,6 +28,10 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
              "%s: strength.wall_fracture_energy: models of material points do not know cells that burst; choose "
              "--response direct, or leave it out",
              run->scene->path);
+  PetscCheck(!LamWallsRelax(&run->scene->micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.wall.relaxation: the steps of `lamella fe2` take no time, on which walls with memory depend; "
+             "choose `lamella process`",
+             run->scene->path);
   ChooseContact(&run->scene->micro);
   for (PetscInt r = 0; r < run->scene->region_count; r++) ChooseContact(&run->scene->regions[r].micro);
   if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);

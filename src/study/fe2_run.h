@@ -106,6 +106,8 @@ PetscErrorCode LamFE2Connect(LamFE2Run *run);
 PetscErrorCode LamFE2Disconnect(LamFE2Run *run); /* after the macroscale solver's end */
 /* The same for one tissue: its database and mesh; its responder, unless a stop is requested first (run->stopped). */
 PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue);
+/* The scene's microstructure becomes that of the tissue, with the mesh found for it; relaxation stays. */
+void LamFE2TakeMesh(const LamFE2Tissue *tissue, LamScene *scene);
 PetscErrorCode LamFE2ConnectTissue(LamFE2Run *run, LamFE2Tissue *tissue, LamResponder *responder);
 PetscErrorCode LamFE2DisconnectTissue(LamFE2Tissue *tissue);
 /* Multiplies each wall parameter of the RVE, and strengths and energies of its lamella and of walls that tear, relative

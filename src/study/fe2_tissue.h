@@ -24,6 +24,8 @@ typedef struct {
   LamNodeSolver solved, nodes; /* by the chain; by `known`, else by the chain */
   LamResponder direct, cache;  /* NULL: not in use; with models of points `direct` holds them */
   LamResponder reference;      /* of certified reactions; NULL: not in use */
+  LamRelaxation relaxation;    /* of walls, if `scene` has them elastic and responses convolve (relaxing.h) */
+  LamResponder relaxing;       /* NULL: not in use */
 
   /* rank 0 only */
   LamRecordWriter records; /* appends the cache's records to the database file */

@@ -20,13 +20,15 @@ static PetscErrorCode Connect(LamProcessStudy *study, LamResponder *responder)
   LamFE2Tissue *tissue;
 
   PetscFunctionBeginUser;
-  if (response->response != LAM_FE2_DIRECT)
-    PetscCall(LamRefuseHistory(study->scene->path, &study->scene->micro, "a table",
-                               ", or solve directly, without a database"));
+  PetscCheck(response->response == LAM_FE2_DIRECT || study->scene->micro.interface != LAM_INTERFACE_LAMELLA,
+             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%s: rve.interface.law: lamella: its responses depend on history, which a table does not have; write law: "
+             "bonded or contact, or solve directly, without a database",
+             study->scene->path);
   PetscCall(LamFE2TissuesCreateOne(PETSC_COMM_SELF, study->scene, response->database_path, 1, &response->tissues));
   tissue = response->tissues.tissues;
   PetscCall(LamFE2PrepareTissue(response, tissue));
-  study->scene->micro = tissue->scene.micro;
+  LamFE2TakeMesh(tissue, study->scene);
   PetscCall(LamFE2ConnectTissue(response, tissue, responder));
   if (!response->stopped && response->response == LAM_FE2_CACHE && response->database_path)
     PetscCall(LamFE2OpenTissueFile(tissue));
@@ -141,7 +143,7 @@ static PetscErrorCode WriteFrames(LamProcessStudy *study)
 
   PetscFunctionBeginUser;
   if (!study->writer || !study->history.count) PetscFunctionReturn(0);
-  if (!rve) {
+  if (!rve || study->response.tissues.tissues->relaxing) {
     PetscCall(LamSceneRVECreate(PETSC_COMM_SELF, study->scene, &own));
     PetscCall(LamRVESetInterrupt(own, LamStopInterrupt, NULL));
     rve = own;
@@ -210,7 +212,7 @@ static PetscErrorCode Solve(LamProcessStudy *study)
   PetscCall(LamProcessSetResponder(study->process, responder));
   if (study->response.response == LAM_FE2_DIRECT)
     PetscCall(LamProcessSetTissue(study->process, LamFE2ChangeTissue, study->response.tissues.tissues));
-  if (study->response.response == LAM_FE2_CACHE)
+  if (study->response.response == LAM_FE2_CACHE && !HasHistory(study))
     PetscCall(LamProcessSetReferenceResponder(study->process, study->response.tissues.tissues->direct));
   PetscCall(LamProcessSetMonitor(study->process, AddState, study));
   PetscCall(LamProcessSetStop(study->process, LamStopRequested));

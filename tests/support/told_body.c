@@ -1,5 +1,6 @@
 #include "told_body.h"
 #include "support/test.h"
+#include <lamella/relaxing.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,12 +36,22 @@ static PetscErrorCode KeepPoint(const LamProcessState *state, void *ctx)
 /* A soft tissue whose lumens grow with the turgor. */
 static void MakeMaterial(PetscInt points, Told *told)
 {
+  const LamRelaxation *relaxation = &told->scene->micro.relaxation;
   Synthetic *material;
 
-  assert_int_equal(SyntheticCreate(points, &told->material, &material), 0);
+  assert_int_equal(SyntheticCreate(points, &told->elastic, &material), 0);
+  told->material = told->elastic;
+  if (relaxation->terms)
+    assert_int_equal(LamRelaxingResponderCreate(told->elastic, relaxation, points, &told->material), 0);
   material->phi = 0.7;
   material->c = 0.05;
   material->respond = BodyRespond;
+}
+
+static void FreeMaterial(Told *told)
+{
+  if (told->material != told->elastic) assert_int_equal(LamResponderDestroy(&told->material), 0);
+  assert_int_equal(LamResponderDestroy(&told->elastic), 0);
 }
 
 /* Reads the scene, and changes its tolerance where one is given. */
@@ -51,6 +62,8 @@ void ReadScene(const char text[], PetscReal tolerance, Told *told)
   memset(told, 0, sizeof(*told));
   snprintf(whole, sizeof(whole), BODY_TISSUE "%s", text);
   assert_int_equal(LamSceneReadText("body.yaml", whole, &told->scene), 0);
+  if (strstr(text, BODY_RELAXES))
+    told->scene->micro.relaxation = (LamRelaxation){.terms = 2, .share = {0.3, 0.3}, .time = {10, 100}};
   if (tolerance > 0) told->scene->process.tolerance = tolerance;
   told->bodies = (LamBodyState *)calloc(BODY_STATES, PetscMax(sizeof(LamBodyState), sizeof(LamProcessState)));
   assert_non_null(told->bodies);
@@ -76,7 +89,7 @@ void RunBody(Told *told)
   assert_int_equal(LamBodyGetCounts(body, &told->counts), 0);
   assert_int_equal(LamBodyDestroy(&body), 0);
   assert_int_equal(LamMacroDestroy(&macro), 0);
-  assert_int_equal(LamResponderDestroy(&told->material), 0);
+  FreeMaterial(told);
 }
 
 Told FollowBody(const char text[], PetscReal tolerance)
@@ -110,7 +123,7 @@ Told FollowPoint(const char text[], PetscReal tolerance)
   assert_int_equal(LamProcessSetMonitor(process, KeepPoint, &told), 0);
   assert_int_equal(LamProcessRun(process, &told.reason, told.message), 0);
   assert_int_equal(LamProcessDestroy(&process), 0);
-  assert_int_equal(LamResponderDestroy(&told.material), 0);
+  FreeMaterial(&told);
   if (told.reason != LAM_PROCESS_DONE) fail_msg("%s", told.message);
   return told;
 }

@@ -18,9 +18,10 @@ enum { BODY_STATES = 4000 };
   "  wall: {law: mooney_rivlin, C1: 0.1 MPa, C2: 0.01 MPa}\n"                                                          \
   "  turgor: {pressure: 0.05 MPa}\n"                                                                                   \
   "strength: {lamella_normal: 0.1 MPa}\n"
+#define BODY_RELAXES "# walls relax\n" /* in a text: they do */
 typedef struct Told_s {
   LamScene *scene;
-  LamResponder material;
+  LamResponder elastic, material; /* the same, or with walls that relax */
   LamProcessReason reason;
   char message[LAM_PROCESS_MESSAGE];
   LamProcessCounts counts;

@@ -87,6 +87,37 @@ TEST(stress_that_relaxes_is_that_of_the_point)
   assert_near(BodyReaction(LastBody(&body), "top")[1], point.points[point.count - 1].response.P[4], 1e-6);
 }
 
+/* Loaded at once, with a speed, held, and let back: reactions at all outputs. */
+TEST(walls_that_relax_are_those_of_the_point)
+{
+#define HELD BODY_RELAXES "process:\n  output: 5 s\n  program: [%s]\n"
+  TOLD free = FollowPoint("process: {duration: 1 s}\n" BODY_RELAXES, 1e-7);
+  const PetscReal inflated = free.points[0].response.load.F[4];
+  char text[2000], program[1000];
+  PetscInt i = 0;
+
+  snprintf(
+      program, sizeof(program),
+      "{for: 0 s, F: [[free, 0], [0, %.17g]], P: [[0 MPa, x], [x, x]]}, {for: 20 s, F: [[free, 0], [0, "
+      "%.17g]], P: [[0 MPa, x], [x, x]]}, {for: 50 s}, {for: 10 s, F: [[free, 0], [0, 1]], P: [[0 MPa, x], [x, x]]}",
+      1 + 0.05 / inflated, 1 + 0.1 / inflated);
+  snprintf(text, sizeof(text), HELD, program);
+  TOLD point = FollowPoint(text, 1e-7);
+  snprintf(text, sizeof(text), STRETCHED HELD,
+           "{for: 0 s, load: 0.5}, {for: 20 s, load: 1}, {for: 50 s}, {for: 10 s, load: 0}");
+  TOLD body = FollowBodyToEnd(text, 1e-7);
+
+  assert_true(point.points[4].response.P[4] > 1.1 * point.points[14].response.P[4]); /* while it is held */
+  for (PetscInt k = 0; k < body.count; k++) {
+    if (body.bodies[k].event != LAM_EVENT_COUNT) continue;
+    while (point.points[i].event != LAM_EVENT_COUNT) i++;
+    assert_near(body.bodies[k].time, point.points[i].time, 1e-9);
+    assert_near(BodyReaction(&body.bodies[k], "top")[1], point.points[i++].response.P[4], 1e-6);
+  }
+  assert_true(i >= 16);
+#undef HELD
+}
+
 TEST(a_jump_of_the_load_leaves_water_no_time)
 {
   TOLD body = FollowBodyToEnd(STRETCHED RELAXATION "  program: [{for: 10 min}, {for: 0 s, load: 1}]\n", 1e-6);
