@@ -15,6 +15,7 @@
     heterogeneous.h        responses for a body of heterogeneous tissue
     cache.h                queries a database and solves the states that it lacks
     sealed.h               responses of sealed cells, from those for prescribed turgor
+    relaxing.h             responses of walls that relax, from those of elastic ones
     macro.h                the macroscale finite element solver
     kinetics.h             kinetic laws
     process.h              tissue that changes in time at one material point
@@ -53,6 +54,7 @@
 #include <lamella/heterogeneous.h>
 #include <lamella/cache.h>
 #include <lamella/sealed.h>
+#include <lamella/relaxing.h>
 #include <lamella/macro.h>
 #include <lamella/process.h>
 #include <lamella/body.h>

@@ -32,7 +32,8 @@ static const LamKey wall_keys[] = {
      .help =
          "How stress relaxes in walls whose strain is held, in all of them alike: a Prony series of 1 to 3 terms on "
          "the stress of matrix and fibres. C1, C2 and those of the fibres are the moduli at once; a change of volume "
-         "is resisted as ever. For `rve`, and for `process` at a material point."},
+         "is resisted as ever. For `rve` and `process`; a database is of the walls at once, from whose responses `process` "
+         "approximates those of walls that relax."},
     {MAP("rve.wall.relaxation[]"), .example = "{share: 0.3, time: 10 s}", .help = "One term."},
     {REAL("rve.wall.relaxation[].share"), REQUIRED, ABOVE(0), BELOW(1), .example = "0.3",
      .help = "Share of the moduli that is lost; all terms together less than 1."},

@@ -157,7 +157,12 @@ PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
   PetscCall(LamSceneRead(scene_path, &b->scene));
   PetscCheck(b->scene->has_sample, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: has no block `sample`, which says what states to build from", scene_path);
-  b->scene->micro.relaxation.terms = 0; /* a table is of walls at once (relaxing.h) */
+  if (LamWallsRelax(&b->scene->micro) && LamIsFirst(PETSC_COMM_WORLD))
+    LamReportNote(&b->reporter,
+                  "%s: rve.wall.relaxation: a table is of the walls at once, from which `lamella process` approximates "
+                  "those that relax",
+                  scene_path);
+  b->scene->micro.relaxation.terms = 0;
   PetscCall(LamRefuseHistory(scene_path, &b->scene->micro, "a table", ""));
   PetscCall(LamChooseMesh(b->scene, &trial));
   LamWarnOfMesh(PETSC_COMM_WORLD, &b->reporter, b->scene, &trial);

@@ -127,9 +127,16 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
              run->scene_path);
   PetscCheck(!models || !LamWallsRelax(&tissue->scene.micro), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: rve.wall.relaxation: models of a lamella know no time; choose --response direct", run->scene_path);
-  if (run->response != LAM_FE2_DIRECT) {
+  if (run->response != LAM_FE2_DIRECT && LamWallsRelax(&tissue->scene.micro)) {
     tissue->relaxation = tissue->scene.micro.relaxation;
     tissue->scene.micro.relaxation.terms = 0;
+    if (LamIsFirst(run->comm) && tissue == run->tissues.tissues)
+      LamReportNote(&run->reporter,
+                    "%s: rve.wall.relaxation: responses of a database are of elastic walls; those of walls that relax "
+                    "are approximated from them%s (docs/theory/walls.md, Walls with memory in "
+                    "tables); --response direct does not approximate",
+                    run->scene_path,
+                    tissue->scene.turgor > 0 ? ", and are too stiff against fast loads after long turgor" : "");
   }
   if (run->response == LAM_FE2_DATABASE)
     PetscCall(

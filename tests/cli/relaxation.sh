@@ -29,7 +29,7 @@ for option in --onset --failure; do
 done
 expect 2 -e 'rve.wall.relaxation: responses of walls with memory depend on time' "$lamella" query r.h5 -F '1.02 0 0 1'
 
-# a process of the same walls, with its cells in the file; not with a table
+# a process of the same walls, with its cells in the file
 sed '/^load/,$d' "$scene" >walls.yaml
 cat walls.yaml - >process.yaml <<'YAML'
 process:
@@ -47,4 +47,39 @@ assert len(held) > 4 and all(a > b for a, b in zip(held, held[1:]))
 assert all(a["dissipated"] <= b["dissipated"] for a, b in zip(states, states[1:])) and states[-1]["dissipated"] > 0
 PY
 expect 0 "$lamella" plot --dpi 40 p.h5 -o p.svg
-expect 2 -e 'rve.wall.relaxation: responses of walls with memory depend on time' "$lamella" process process.yaml -d d.h5
+
+# from a database, which is of the walls at once: nearly the same, and its cells are of walls that relax
+expect 0 -e 'responses of a database are of elastic walls' "$lamella" process process.yaml -d d.h5 --json -o pd.h5
+mv out.txt database.jsonl
+"$lamella" process process.yaml --json >direct.jsonl
+/usr/bin/python3 - direct.jsonl database.jsonl <<'PY' || fail "wrong states from a database"
+import json, sys
+a, b = [[s for s in map(json.loads, open(path)) if "state" in s] for path in sys.argv[1:]]
+assert len(a) == len(b) > 4 and b[-1]["dissipated"] is None
+assert all(abs(s["P"][0] - t["P"][0]) < 0.1 * a[-1]["P"][0] for s, t in zip(a[1:], b[1:]))
+PY
+expect 0 "$lamella" plot --dpi 40 pd.h5 -o pd.svg
+cat walls.yaml - >table.yaml <<'YAML'
+sample: {stretch: {min: -0.1, max: 0.2}, turgor: {min: 0 MPa, max: 0.05 MPa}}
+accuracy: 0.1
+YAML
+expect 0 -e 'a table is of the walls at once' "$lamella" build table.yaml -d table.h5
+expect 0 "$lamella" process process.yaml -d table.h5 --response cache
+
+# a body: in a process alone
+cat walls.yaml - >body.yaml <<'YAML'
+macro:
+  mesh: {box: [1 mm, 1 mm], elements: [1, 1]}
+  boundary: [{on: left, symmetry: true}, {on: bottom, symmetry: true}, {on: top, displacement: [free, 0.05 mm]}]
+process:
+  output: 1 min
+  program: [{for: 10 s, load: 1}, {for: 5 min}]
+YAML
+expect 2 -e 'the steps of `lamella fe2` take no time' "$lamella" fe2 body.yaml
+expect 0 "$lamella" process body.yaml --json
+/usr/bin/python3 - out.txt <<'PY' || fail "wrong states of the body"
+import json, sys
+states = [o for o in map(json.loads, open(sys.argv[1])) if "reaction" in o and o["time"] > 10]
+held = [o["reaction"]["top"][1] for o in states]
+assert len(held) > 4 and all(a > b for a, b in zip(held, held[1:]))
+PY
