@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# lamella process of a body: rows, JSON, files, pictures, databases, regions, contact, true reasons, refusals, signals.
+# slow: lamella process of a body: rows, JSON, files, pictures, databases, regions, contact, true reasons, refusals, signals.
 . "$(dirname "$0")/common.sh"
 set -e -o pipefail
 example=$source/tests/scenes/storage.yaml

@@ -1,4 +1,4 @@
-# lamella tradeoff: what it measures, tells and writes; the same errors in every run; its end by a signal.
+# slow: lamella tradeoff: what it measures, tells and writes; the same errors in every run; its end by a signal.
 . "$(dirname "$0")/common.sh"
 
 tissue mesh='along: 6, through: 2' >scene.yaml <<'YAML'

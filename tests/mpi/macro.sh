@@ -1,4 +1,4 @@
-# the claims about the macroscale solver and the cache hold on two and three ranks
+# slow: the claims about the macroscale solver and the cache hold on two and three ranks
 set -eu
 programs=$(dirname "$1")/tests
 command -v mpirun >/dev/null || exit 77

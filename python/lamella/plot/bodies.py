@@ -66,6 +66,7 @@ RIGID, RIGID_WIDTH = "#bdbdc4", 5  #: of plates, indenters and grips; points
 PLATE_SHARE, INDENTER_SHARE = 0.05, 0.25  #: of the body's size that a plate takes beside it, and at most an indenter
 ZOOM_HEIGHT, CURVE_HEIGHT, ZOOM_GAP = 236, 150, 9  #: points, of a page with zooms
 ROUNDING = 1e-6  #: of the largest reaction: a smaller one, as of a roller's free component, is rounding
+NOTHING = 1e-9  #: of C1 + C2 over the body's size: smaller reactions, as of a free body, are rounding, too
 
 
 class Reactions:
@@ -84,6 +85,8 @@ class Reactions:
             self.margin = read("certified_margin", 2 * n).reshape(steps, n, 2)
         self.summary = source.object("macro/summary")
         self.unit = self.summary.get("force_unit", "N/mm")  # absent in older files
+        size = np.ptp(source.points("macro/nodes"), axis=0).max()  # mm
+        self.nothing = NOTHING * 1e-6 * source.stress_unit * (size**2 if self.unit == "N" else size)
         loaded = self.summary.get("loaded") or {}
         self.loaded = loaded.get("boundary")
         if self.loaded in self.sides:
@@ -107,10 +110,10 @@ class Reactions:
 
     def columns(self):
         """Side, component and label of those that are not rounding."""
-        largest = np.nanmax(np.abs(self.values), initial=0)
+        least = max(self.nothing, ROUNDING * np.nanmax(np.abs(self.values), initial=0))
         for s, side in enumerate(self.sides):
             for i in (0, 1):
-                if not np.nanmax(np.abs(self.values[:, s, i]), initial=0) < ROUNDING * largest:
+                if not np.nanmax(np.abs(self.values[:, s, i]), initial=0) < least:
                     yield s, i, f"{side} $R_{i + 1}$"
 
     def draw(self, page, axes, options):
@@ -323,8 +326,8 @@ def _time_charts(body):
     lost = t.column("plasmolysed")
     if t.is_known(lost) and t.varies(lost):
         damage.append((lost, "without turgor"))
-    return [(f"reaction $R$ ({body.reactions.unit})", forces), ("turgor $p$ (MPa)", turgor), ("share of the start", shares),
-            (label, damage)]
+    return ([(f"reaction $R$ ({body.reactions.unit})", forces)] if forces else []) + [
+        ("turgor $p$ (MPa)", turgor), ("share of the start", shares), (label, damage)]
 
 
 def _page(body, options):

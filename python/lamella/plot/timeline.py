@@ -47,10 +47,10 @@ class TimeLine:
 
 
 def charts(page, x, y, width, height, line, four, now, options):
-    """Four charts (label, [(values, label), ...]) two by two, or in a row where the place is low, with lines at events,
+    """Up to four charts (label, [(values, label), ...]) two by two, or in a row where the place is low, with lines at events,
     and a red one at the state `now`."""
-    columns = 4 if width > 3 * height else 2
-    gap, rows = 12, 4 // columns
+    columns = len(four) if width > 3 * height else 2
+    gap, rows = 12, -(-len(four) // columns)
     wide, high = (width - (columns - 1) * gap) / columns, (height - (rows - 1) * gap) / rows
     for k, (label, curves) in enumerate(four):
         axes = page.chart(x + k % columns * (wide + gap), y + k // columns * (high + gap), wide, high)
