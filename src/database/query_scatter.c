@@ -362,10 +362,12 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
 void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model)
 {
   LamScatterSearch search;
-  const LamScatterNearest *at;
+  const PetscBool bonded = (PetscBool)(database->header.micro.interface == LAM_INTERFACE_BONDED);
+  const LamScatterNearest *at = &search.blends, *alone = &search.alone;
 
   LamScatterFind(database, load, PETSC_FALSE, &search);
-  at = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
+  if (alone->distance2 < at->distance2 && !LamScatterAtKink(&database->scatter.records[alone->state], bonded))
+    at = alone;
   *model = (LamScatterModel){-1, 0};
   if (at->state < 0 || database->scatter.records[at->state].floating_cells > 0) return;
   if (search.refuses.distance2 <= DOUBT * DOUBT * at->distance2) return;

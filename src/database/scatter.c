@@ -2,6 +2,7 @@
   Records outside the grid: their use, their models of the potential, and the search for the nearest.
 */
 #include "database_internal.h"
+#include <lamella/ellipticity.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,13 +41,19 @@ static PetscBool HasPlace(const LamLoad *load)
   return (PetscBool)(isfinite(sum) && LamLoadValidateInPlane(load, &unused) && load->F[8] > 0);
 }
 
+PetscBool LamScatterAtKink(const LamResponse *record, PetscBool bonded)
+{
+  return (PetscBool)(!bonded && LamEllipticityIsLost(record->ellipticity));
+}
+
 static LamScattered StateOf(const LamImages *images, PetscBool bonded, const LamResponse *record)
 {
   LamScattered state = {.use = LAM_SCATTER_REFUSES, .F33 = record->load.F[8]};
 
   LamVariables(&record->load, state.model.x);
   if (record->status == LAM_CONVERGED && record->stable && LamExpansionMake(record, bonded, &state.model))
-    state.use = record->branch || record->floating_cells > 0 ? LAM_SCATTER_ALONE : LAM_SCATTER_BLENDS;
+    state.use = record->branch || record->floating_cells > 0 || LamScatterAtKink(record, bonded) ? LAM_SCATTER_ALONE
+                                                                                                 : LAM_SCATTER_BLENDS;
   state.images = DistinctImages(images, state.model.x);
   return state;
 }

@@ -151,3 +151,16 @@ QUERY_TEST(cells_that_float_answer_their_own_state_alone, MakeContacts())
   near.F[0] += 1e-3;
   AssertStatus(db, near, LAM_OUT_OF_REACH);
 }
+
+/* Between two meetings of walls the tangent may be anything, over strains of 1e-4. */
+QUERY_TEST(a_state_at_a_kink_answers_its_own_state_alone, MakeContacts())
+{
+  LamResponse kink = ExactContact(contact_probe);
+  LamLoad near = contact_probe;
+
+  kink.ellipticity = -0.01;
+  assert_int_equal(LamDatabaseAdd(db, 1, NULL, &kink), 0);
+  Ask(db, contact_probe);
+  near.F[0] += 1e-3;
+  AssertStatus(db, near, LAM_OUT_OF_REACH);
+}
