@@ -72,7 +72,8 @@ static PetscErrorCode QueryAt(LamMacro macro, PetscMPIInt rank, PetscBool mine, 
 {
   const LamLoad load = {.F = {1 + e[0], e[1], 0, e[1], 1 + e[2], 0, 0, 0, macro->axisymmetric ? 1 + e[0] : 1},
                         .turgor = macro->turgor * (macro->point_count ? macro->turgor_share[point] : 0),
-                        .cohesion = macro->point_count ? macro->cohesion[point] : 0};
+                        .cohesion = macro->point_count ? macro->cohesion[point] : 0,
+                        .duration = macro->duration};
   LamResponse response;
 
   PetscFunctionBeginUser;

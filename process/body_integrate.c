@@ -414,6 +414,12 @@ static void Destroy(Integration *in)
 
 /* ---- time loop ---- */
 
+/* Steps of IDA end next to a stop time, up to rounding. */
+static PetscBool IsEvaluated(LamBody body, PetscReal time)
+{
+  return (PetscBool)(PetscAbsReal(body->evaluated - time) <= LamTimeTolerance(body->process));
+}
+
 /* Equilibrium of the body at IDA's state at a time within the last step. keeps: turgor and displacement of the present
    state are the initial guess, else the interpolated ones. */
 static PetscErrorCode SettleAt(Integration *in, PetscReal time, PetscBool keeps, PetscBool *ok)
@@ -482,7 +488,7 @@ static PetscErrorCode ReportUpTo(Integration *in, PetscReal time, PetscBool *ok)
   while (*ok && process->next_output <= time && process->next_output <= process->spec->duration) {
     const PetscReal at = process->next_output;
 
-    if (body->evaluated == at) {
+    if (IsEvaluated(body, at)) {
       PetscCall(Unpack(in, at, N_VGetArrayPointer(in->base.y))); /* end of the step */
       if (in->layout.water < 0) PetscCall(LamBodyFillWater(body));
     } else {
@@ -500,7 +506,7 @@ static PetscErrorCode ReportUpTo(Integration *in, PetscReal time, PetscBool *ok)
 static PetscErrorCode TakeStep(Integration *in, PetscReal time)
 {
   PetscFunctionBeginUser;
-  if (in->pending && in->body->evaluated == time)
+  if (in->pending && IsEvaluated(in->body, time))
     PetscCall(LamMacroAccept(in->body->macro));
   else if (in->pending)
     PetscCall(LamMacroReject(in->body->macro));
@@ -518,6 +524,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
+  if (process->has_history) PetscCall(ReportUpTo(in, t, ok)); /* a restart there */
   while ((flag == IDA_SUCCESS || flag == IDA_TSTOP_RETURN) && *ok && t < process->segment.end) {
     if (++body->steps > MAX_STEPS) {
       PetscCall(PetscStrncpy(process->trouble, "its steps of time are too short to come on", sizeof(process->trouble)));
@@ -532,7 +539,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
     if (flag < 0) break;
     process->counts.steps++;
     PetscCall(TakeStep(in, t));
-    if (process->has_history && body->evaluated != t) PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
+    if (process->has_history && !IsEvaluated(body, t)) PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
     if (*ok) PetscCall(ReportUpTo(in, t, ok));
     if (*ok) PetscCall(Unpack(in, t, N_VGetArrayPointer(in->base.y)));
     if (process->stopped) break;
@@ -540,7 +547,7 @@ static PetscErrorCode Follow(Integration *in, PetscBool happened[LAM_EVENT_COUNT
   if (flag < 0 && in->pending) PetscCall(LamMacroReject(body->macro));
   PetscCall(LamIntegratorTake(&in->base, flag, happened));
   if (flag < 0 || process->stopped) *ok = PETSC_FALSE;
-  if (*ok && body->evaluated != t)
+  if (*ok && !IsEvaluated(body, t))
     PetscCall(SettleAt(in, t, PETSC_FALSE, ok));
   else if (*ok && in->layout.water < 0)
     PetscCall(LamBodyFillWater(body));

@@ -132,8 +132,8 @@ static void WarnOfIndicators(const LamProcessStudy *study)
     fprintf(
         stderr,
         "lamella process: events that rest on tractions or gaps of which the database's states around do not agree: "
-        "%d; --response cache solves there\n",
-        (int)doubtful);
+        "%d; --response %s solves there\n",
+        (int)doubtful, LamWallsRelax(&study->scene->micro) ? "direct" : "cache");
 }
 
 static PetscErrorCode ReportPointTest(const LamProcessStudy *study, const LamConsole *console)

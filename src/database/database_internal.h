@@ -20,8 +20,11 @@ typedef struct {
 /* How a record is used for nearby queries. */
 typedef enum {
   LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, no floating cells */
-  LAM_SCATTER_ALONE,   /* another branch, floating cells, or at a kink: its own state only */
+  LAM_SCATTER_ALONE,   /* another branch, or floating cells: its own state only */
   LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: only blocks blends nearby */
+  /* In contact, with a tangent that is not elliptic: walls meet at points of the mesh, and between two of their meetings,
+     over strains of 1e-4, the tangent may be anything. Its own state only, without regard to others */
+  LAM_SCATTER_KINK,
 } LamScatterUse;
 
 typedef struct {
@@ -115,14 +118,9 @@ typedef struct {
   LamScatterVector x; /* of the query */
   LamScatterPlace place;
   LamScatterVector turned[LAM_MAX_IMAGES];  /* x in the frame of each image */
-  LamScatterNearest blends, alone, refuses; /* the nearest of each use */
+  LamScatterNearest blends, alone, refuses, kinks; /* the nearest of each use */
 } LamScatterSearch;
 
-/*
-  A state in contact whose tangent is not elliptic: walls touch at points, and between two of their meetings the tangent
-  may be anything, over strains of 1e-4. Its energy and stress are right, its tangent is no one else's.
-*/
-PetscBool LamScatterAtKink(const LamResponse *record, PetscBool bonded);
 /* Initialises the search at a load, without looking at records. */
 void LamScatterBegin(LamDatabase database, const LamLoad *load, LamScatterSearch *search);
 /* Finds the nearest records of each use; same_F33: of those that respond, only records of the load's F33. */

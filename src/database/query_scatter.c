@@ -345,6 +345,7 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
   PetscFunctionBeginUser;
   LamScatterFind(database, load, PETSC_TRUE, &search);
   own = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
+  if (search.kinks.distance2 < own->distance2) own = &search.kinks;
   if (IsOwnState(own)) {
     RespondFromModel(&search, own, 0, response);
     PetscFunctionReturn(0);
@@ -362,12 +363,10 @@ PetscErrorCode LamScatterQuery(LamDatabase database, const LamLoad *load, PetscR
 void LamScatterModelFind(LamDatabase database, const LamLoad *load, LamScatterModel *model)
 {
   LamScatterSearch search;
-  const PetscBool bonded = (PetscBool)(database->header.micro.interface == LAM_INTERFACE_BONDED);
-  const LamScatterNearest *at = &search.blends, *alone = &search.alone;
+  const LamScatterNearest *at;
 
   LamScatterFind(database, load, PETSC_FALSE, &search);
-  if (alone->distance2 < at->distance2 && !LamScatterAtKink(&database->scatter.records[alone->state], bonded))
-    at = alone;
+  at = search.alone.distance2 < search.blends.distance2 ? &search.alone : &search.blends;
   *model = (LamScatterModel){-1, 0};
   if (at->state < 0 || database->scatter.records[at->state].floating_cells > 0) return;
   if (search.refuses.distance2 <= DOUBT * DOUBT * at->distance2) return;

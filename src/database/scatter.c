@@ -41,19 +41,15 @@ static PetscBool HasPlace(const LamLoad *load)
   return (PetscBool)(isfinite(sum) && LamLoadValidateInPlane(load, &unused) && load->F[8] > 0);
 }
 
-PetscBool LamScatterAtKink(const LamResponse *record, PetscBool bonded)
-{
-  return (PetscBool)(!bonded && LamEllipticityIsLost(record->ellipticity));
-}
-
 static LamScattered StateOf(const LamImages *images, PetscBool bonded, const LamResponse *record)
 {
   LamScattered state = {.use = LAM_SCATTER_REFUSES, .F33 = record->load.F[8]};
 
   LamVariables(&record->load, state.model.x);
   if (record->status == LAM_CONVERGED && record->stable && LamExpansionMake(record, bonded, &state.model))
-    state.use = record->branch || record->floating_cells > 0 || LamScatterAtKink(record, bonded) ? LAM_SCATTER_ALONE
-                                                                                                 : LAM_SCATTER_BLENDS;
+    state.use = record->branch || record->floating_cells > 0           ? LAM_SCATTER_ALONE
+                : !bonded && LamEllipticityIsLost(record->ellipticity) ? LAM_SCATTER_KINK
+                                                                       : LAM_SCATTER_BLENDS;
   state.images = DistinctImages(images, state.model.x);
   return state;
 }
@@ -127,7 +123,8 @@ void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *sear
 {
   const LamScatterNearest none = {-1, 0, INFINITY};
 
-  *search = (LamScatterSearch){.db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none};
+  *search = (LamScatterSearch){
+      .db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none, .kinks = none};
   LamVariables(load, search->x);
   search->place = PlaceOf(search->x, load->F[8]);
   for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);
@@ -135,7 +132,7 @@ void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *sear
 
 void LamScatterFind(LamDatabase db, const LamLoad *load, PetscBool same_F33, LamScatterSearch *search)
 {
-  LamScatterNearest *const nearest[] = {&search->blends, &search->alone, &search->refuses}; /* by use */
+  LamScatterNearest *const nearest[] = {&search->blends, &search->alone, &search->refuses, &search->kinks}; /* by use */
   const LamScatter *scatter = &db->scatter;
 
   LamScatterBegin(db, load, search);

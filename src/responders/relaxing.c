@@ -114,8 +114,10 @@ static void Advance(const Question *q, const LamResponse *e, Past *next)
         now[STRESS + 3 * i + j] += q->B[3 * n + i] * (e->P[3 * n + j] - fluids * q->B[3 * n + j]);
   for (int l = 0; l < LOADS; l++) now[PRESSURES + l] = q->J * load[l];
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(indicators); i++) {
-    memcpy(&now[k], (const char *)e + indicators[i].offset, (size_t)indicators[i].count * sizeof(PetscReal));
-    k += indicators[i].count;
+    const PetscReal *value = (const PetscReal *)((const char *)e + indicators[i].offset);
+
+    for (PetscInt m = 0; m < indicators[i].count; m++, k++) /* unknown: as it was */
+      now[k] = PetscIsNanReal(value[m]) ? q->past.elastic[k] : value[m];
   }
   for (PetscInt i = 0; i < q->step.terms; i++)
     for (k = 0; k < COUNT; k++)
@@ -147,8 +149,8 @@ static void AddTangent(const Question *q, const LamResponse *e, const PetscReal 
         }
 }
 
-/* r: from the elastic response to that of the step; now: what convolves, at its end. */
-static void Relax(const Question *q, const LamLoad *load, const PetscReal now[], LamResponse *r)
+/* r: from the elastic response to that of the step. */
+static void Relax(const Question *q, const LamLoad *load, LamResponse *r)
 {
   const PetscReal c = q->step.scale, *S = &q->rest[STRESS], *F = load->F;
   const PetscReal l0[LOADS] = {q->rest[PRESSURES + TURGOR] / q->J, q->rest[PRESSURES + COHESION] / q->J};
@@ -178,8 +180,11 @@ static void Relax(const Question *q, const LamLoad *load, const PetscReal now[],
   r->energy_cohesion2 /= c;
   r->energy_turgor_cohesion /= c;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(indicators); i++)
-    for (PetscInt m = 0; m < indicators[i].count; m++, k++)
-      ((PetscReal *)((char *)r + indicators[i].offset))[m] = c * now[k] + q->rest[k];
+    for (PetscInt m = 0; m < indicators[i].count; m++, k++) {
+      PetscReal *value = (PetscReal *)((char *)r + indicators[i].offset) + m;
+
+      *value = c * *value + q->rest[k];
+    }
   if (!PetscIsNanReal(r->ellipticity)) LamResponseFindBand(r);
   r->turgor_mean = load->turgor;
 }
@@ -205,7 +210,7 @@ static PetscErrorCode Respond(void *ctx, PetscInt n, const LamLoad loads[], cons
 
     if (LamResponseHasFields(&responses[i])) {
       Advance(&questions[i], &responses[i], &next);
-      Relax(&questions[i], &loads[i], next.elastic, &responses[i]);
+      Relax(&questions[i], &loads[i], &responses[i]);
       if (points && points[i] >= 0) r->now[points[i]] = next;
     }
     responses[i].load = loads[i];

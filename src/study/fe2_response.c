@@ -188,18 +188,22 @@ PetscErrorCode LamFE2PrepareResponse(LamFE2Run *run)
 /* Creates a grid for a database without one: a new database, or one written before grids existed. */
 static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
 {
+  LamScene scene = tissue->scene;
+  PetscReal left = 1;
   PetscBool complete;
   LamGrid grid;
 
   PetscFunctionBeginUser;
   PetscCall(LamDatabaseGetGrid(tissue->database, &grid));
   if (grid) PetscFunctionReturn(0);
+  /* walls that have relaxed are those of the elastic tissue under this pressure (relaxing.h) */
+  for (PetscInt i = 0; i < tissue->relaxation.terms; i++) left -= tissue->relaxation.share[i];
+  scene.turgor = (scene.turgor + scene.cohesion) / left - scene.cohesion;
   if (LamIsFirst(run->comm) && tissue->recorded)
     LamReportNote(&run->reporter,
                   "%s: its %" PetscInt_FMT " records belong to no grid; a grid is added, on which new ones lie",
                   tissue->database_path, tissue->recorded);
-  PetscCall(
-      LamSharedGridMake(run->comm, &tissue->scene, tissue->direct, tissue->database, &tissue->grid_text, &complete));
+  PetscCall(LamSharedGridMake(run->comm, &scene, tissue->direct, tissue->database, &tissue->grid_text, &complete));
   run->stopped = (PetscBool)!complete;
   PetscFunctionReturn(0);
 }

@@ -140,6 +140,7 @@ static LamLoad OwnLoad(const Zoom *zoom, PetscReal stress)
   const PetscReal c = cos(zoom->angle), s = sin(zoom->angle), *F = zoom->load.F;
   LamLoad own = zoom->load;
 
+  own.duration = 0; /* an instant after the state that the point has accepted */
   own.turgor /= stress;
   own.cohesion /= stress;
   for (int i = 0; i < 3; i++) {
@@ -284,6 +285,11 @@ PetscErrorCode LamFE2Zoom(LamFE2Run *run)
 
   PetscFunctionBeginUser;
   if (!run->out_path) PetscFunctionReturn(0);
+  if (LamWallsRelax(&run->scene->micro) && run->response != LAM_FE2_DIRECT) {
+    if (LamIsFirst(run->comm))
+      LamReportNote(&run->reporter, "no zoom: a database does not know the cells of walls that relax");
+    PetscFunctionReturn(0);
+  }
   PetscCall(LamMacroGetFields(run->macro, &fields));
   if (LamIsFirst(run->comm) && run->totals.steps) PetscCall(Choose(run, &fields, &count, zooms));
   PetscCall(LamMacroFieldsDestroy(&fields));

@@ -51,6 +51,7 @@ PetscBool LamKnobApplies(const LamScene *scene, LamKnob knob, const char **why)
   if (knob == LAM_KNOB_CELLS) *why = WhyNotCells(&scene->micro);
   if (knob == LAM_KNOB_DATABASE) *why = WhyNotTable(scene);
   if (knob == LAM_KNOB_MACRO && !scene->has_macro) *why = "the scene has no block macro";
+  if (knob == LAM_KNOB_MACRO && LamWallsRelax(&scene->micro)) *why = "steps of fe2 take no time";
   return (PetscBool)(*why == NULL);
 }
 
