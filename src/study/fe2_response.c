@@ -136,7 +136,7 @@ PetscErrorCode LamFE2PrepareTissue(LamFE2Run *run, LamFE2Tissue *tissue)
                     "are approximated from them%s (docs/theory/walls.md, Walls with memory in "
                     "tables); --response direct does not approximate",
                     run->scene_path,
-                    tissue->scene.turgor > 0 ? ", and are too stiff against fast loads after long turgor" : "");
+                    tissue->scene.turgor > 0 ? ", and err most against fast loads after long turgor" : "");
   }
   if (run->response == LAM_FE2_DATABASE)
     PetscCall(

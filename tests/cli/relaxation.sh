@@ -66,6 +66,11 @@ YAML
 expect 0 -e 'a table is of the walls at once' "$lamella" build table.yaml -d table.h5
 expect 0 "$lamella" process process.yaml -d table.h5 --response cache
 
+# in contact a new database reaches to the pressures of walls that have relaxed: (turgor + cohesion) / 0.5
+sed 's/law: bonded/law: contact, cohesion: 0.01 MPa/' process.yaml >contact.yaml
+expect 0 "$lamella" process contact.yaml -d contact.h5
+expect 0 -o 'grid of suction    0.0075 to 0.06 MPa' "$lamella" info contact.h5
+
 # a body: in a process alone
 cat walls.yaml - >body.yaml <<'YAML'
 macro:

@@ -4,7 +4,7 @@ set -e
 
 scene=$source/tests/scenes/cylinder-relaxation.yaml
 expect 0 "$lamella" process "$scene" --json -o held.h5 && mv out.txt direct.jsonl
-expect 0 -e 'approximated from them, and are too stiff against fast loads after long turgor' \
+expect 0 -e 'approximated from them, and err most against fast loads after long turgor' \
     "$lamella" process "$scene" -d held-db.h5 --json && mv out.txt database.jsonl
 /usr/bin/python3 - "$source/docs/tutorial.md" <<'PYTHON'
 import json, re, sys
