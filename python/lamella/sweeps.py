@@ -48,7 +48,7 @@ class Sweep:
         return rows
 
 
-def _set(scene: Any, key: str, value: Any) -> None:
+def set_key(scene: Any, key: str, value: Any) -> None:
     """Sets a key as "rve.turgor.pressure" or "load.0.F"; its blocks must exist, so that a wrong one is noticed."""
     *path, last = key.split(".")
     block = scene
@@ -129,7 +129,7 @@ def sweep(scene: SceneLike, values: dict[str, Sequence[Any]],
     for point in itertools.product(*values.values()):
         varied = json.loads(json.dumps(base))
         for key, value in zip(values, point):
-            _set(varied, key, value)
+            set_key(varied, key, value)
         jobs.append(("sweep", json.dumps(varied, default=_plain), {}))
     if not jobs:
         raise InputError("sweep: a key has no values")

@@ -1,0 +1,73 @@
+# lamella.calibration: parameters are found again, with intervals; what the data do not tell; priors; files; mistakes.
+. "$(dirname "$0")/common.sh"
+package scipy
+
+tissue turgor='pressure: 0.02 MPa' >tension.yaml <<'END'
+load: [{ramp: {to: [[1.2, 0], [0, 1]], steps: 10}}]
+END
+sed 's/^load.*/load: [{inflate: true}, {ramp: {to: [[1, 0.3], [0, 1]], steps: 10}}]/' tension.yaml >shear.yaml
+
+"$python" - "$lamella" <<'PYTHON' || fail "the package"
+import csv, subprocess, sys
+import numpy as np
+import lamella
+from lamella.calibration import Curve, Parameter, calibrate
+from raises import raises
+
+def data(scene, i, j):
+    r = lamella.RVE(scene).solve()
+    F = r.F @ np.linalg.inv(r.F[0]) if scene == "shear.yaml" else r.F
+    return {f"F{i}{j}": F[1:, i - 1, j - 1], f"P{i}{j} (kPa)": r.P[1:, i - 1, j - 1] / 1e3}
+
+tension, shear = data("tension.yaml", 1, 1), data("shear.yaml", 1, 2)
+bounds = {"rve.wall.C1": ("0.02 MPa", "0.5 MPa"), "rve.wall.C4": ("0.1 MPa", "10 MPa"),
+          "rve.turgor.pressure": ("1 kPa", "100 kPa")}
+truth = [0.1, 1, 20]
+
+# exact data give the parameters, from each start; the file that rve writes is data, and so is the dictionary
+fit = calibrate(bounds, [Curve("tension.yaml", tension), Curve("shear.yaml", shear)], starts=2)
+assert np.allclose(fit.values, truth, rtol=1e-6) and not fit.untold and fit.freedom == 16, fit
+assert fit.chi2 < 1e-12 and "2 of 2 starts" in str(fit), fit
+found = lamella.RVE(fit.scene("tension.yaml")).solve()
+assert np.allclose(found.P[1:, 0, 0] / 1e3, tension["P11 (kPa)"], rtol=1e-6)
+subprocess.run([sys.argv[1], "rve", "tension.yaml", "--no-estimate", "--quiet", "-o", "t.h5"], check=True, stdout=subprocess.DEVNULL)
+rows = list(csv.DictReader(open("t.csv")))
+with open("two.csv", "w") as file:
+    file.write("F11, P11 (MPa)\n\n" + "".join(f"{row['F11']}, {row['P11 (MPa)']}\n" for row in rows))
+assert np.allclose(Curve("tension.yaml", "two.csv").y[1:] / 1e3, tension["P11 (kPa)"][: len(rows) - 1], rtol=1e-5)
+
+# with 2 % of noise they lie in their intervals; the scatter is found where it is not told
+rng = np.random.default_rng(4)
+noisy = [{x: v + 0.02 * np.abs(v).max() * rng.standard_normal(len(v)) * x.startswith("P") for x, v in d.items()}
+         for d in (tension, shear)]
+for scatter in (0.02, None):
+    curves = [Curve(scene, d, scatter) for scene, d in zip(("tension.yaml", "shear.yaml"), noisy)]
+    fit = calibrate(bounds, curves, starts=1)
+    assert all(low < t < high for t, (low, high) in zip(truth, fit.intervals)), fit
+    assert 0.01 < fit.intervals[1, 1] - fit.intervals[1, 0] < 0.5, fit
+
+# modulus times thickness is told, not each; a prior on one tells the other
+both = {"rve.wall.C4": ("0.1 MPa", "10 MPa"), "rve.cell.wall_thickness": ("5 um", "25 um"), "rve.wall.C1": ("0.02 MPa", "0.5 MPa")}
+curve = Curve("tension.yaml", noisy[0], 0.02)
+fit = calibrate(both, [curve], starts=1)
+assert any("rve.cell.wall_thickness" in text and "apart" in text for text in fit.untold), fit
+known = [Parameter(key, *ends, prior=("11.25 um", "0.1 um") if "um" in ends[0] else None) for key, ends in both.items()]
+told = calibrate(known, [curve], starts=1)
+assert abs(told.values[1] - 11.25) < 0.3 and np.ptp(told.intervals[0]) < np.ptp(fit.intervals[0]), told
+
+# a model that does not reach is far off; mistakes
+far = Curve("tension.yaml", {"F11": [1.0, 1.5], "P11 (kPa)": [0, 1]}, 0.02)
+assert np.isnan(far.model(far.scene)).all()  # the scene has no undeformed state
+few = Curve("tension.yaml", {"F11": [1.1, 1.2], "P11 (kPa)": [1, 2]})
+for wrong, of, why in (({"rve.C5.x": (1, 2)}, curve, "no block C5"), ({"rve.wall.C5": (1, 2)}, curve, "unknown key"),
+                       ({"rve.wall.C1": ("1 MPa", "0.5 MPa")}, curve, "is not below"),
+                       ({"rve.wall.C1": ("1 kPa", "0.5 MPa")}, curve, "different units"),
+                       ({"rve.wall.C1": ("soft", "0.5 MPa")}, curve, "is no number with a unit"),
+                       (bounds, few, "give the scatter"),
+                       (bounds, far, "F11 from 1 to 1.5; with parameters in the middle of their bounds the scene's states reach from 1.02 to 1.2")):
+    raises(lamella.InputError, why, lambda: calibrate(wrong, [of], starts=1))
+for text, why in (("F11\n1\n", "has 1 columns"), ("F11, P11 (MPa)\n", "has no numbers"), ("F11, P11 (MPa)\n1, x\n", "bad.csv:2: 1,  x: wanted are 2"),
+                  ("F11, stress (MPa)\n1, 2\n", "stress"), ("F11, P11 (MPb)\n1, 2\n", "MPb"), ("F11, P11 (MPa)\n1, nan\n", "wanted are 2")):
+    open("bad.csv", "w").write(text)
+    raises(lamella.InputError, why, lambda: Curve("tension.yaml", "bad.csv"))
+PYTHON
