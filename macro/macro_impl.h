@@ -293,9 +293,9 @@ struct LamMacro_s {
   PetscReal turgor;       /* present fraction of the turgor */
   PetscReal lamella;      /* present factor on the points' cohesion, ... */
   PetscReal walls;        /* ... and on the moduli of their walls */
-  PetscBool relaxes;      /* walls have a memory, of the states accepted, ... */
-  PetscReal time, accepted_time; /* s */
-  PetscReal duration;            /* ... between them; before LamMacroBalance for ever */
+  PetscBool relaxes;      /* walls have a memory, of accepted states */
+  PetscReal time, accepted_time; /* s, of the present state and of the last accepted one */
+  PetscReal duration;            /* of loads: between them; before LamMacroBalance for ever */
   PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
   PetscReal force_floor;  /* lower bound of force_scale where `lenient` */
   PetscReal history[64];

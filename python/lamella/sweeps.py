@@ -63,7 +63,7 @@ def _at(block: Any, part: str, key: str) -> Any:
         return int(part)
     if isinstance(block, dict) and part in block:
         return part
-    raise InputError(f"sweep: the scene has no block {part} of the key {key}")
+    raise InputError(f"the scene has no block {part} of the key {key}")
 
 
 def _plain(value: Any) -> Any:

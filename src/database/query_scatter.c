@@ -25,7 +25,8 @@
   Only records that are converged, stable, of branch 0 and without floating cells are blended. A record of another
   branch or with floating cells serves its own state only; the model of one of another branch also serves the material
   points that hold it (scatter_model.h). Such records and failed ones forbid a blend unless they are much farther away
-  than the nearest record that blends: between them the potential has a kink that no model contains.
+  than the nearest record that blends: between them the potential has a kink that no model contains. In contact a
+  record whose tangent is not elliptic serves its own state only, and forbids nothing (LAM_SCATTER_KINK).
 
   References: Shepard, Proc. 23rd ACM National Conference (1968) 517; Franke and Nielson, Int. J. Numer. Meth. Engng 15
   (1980) 1691.

@@ -32,7 +32,7 @@
 
 enum { TURGOR, COHESION, LOADS };
 /* What convolves: S_e, J p_e and J g_e, tractions and tensions. */
-enum { STRESS = 0, PRESSURES = 9, INDICATORS = PRESSURES + LOADS, COUNT = INDICATORS + 9 };
+enum { STRESS = 0, PRESSURES = 9, INDICATORS = PRESSURES + LOADS, COUNT = INDICATORS + 1 + 1 + 3 + 1 + 3 };
 
 typedef struct {
   size_t offset; /* in LamResponse */

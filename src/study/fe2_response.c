@@ -198,7 +198,7 @@ static PetscErrorCode GiveGrid(LamFE2Run *run, LamFE2Tissue *tissue)
   if (grid) PetscFunctionReturn(0);
   /* walls that have relaxed are those of the elastic tissue under this pressure (relaxing.h) */
   for (PetscInt i = 0; i < tissue->relaxation.terms; i++) left -= tissue->relaxation.share[i];
-  scene.turgor = (scene.turgor + scene.cohesion) / left - scene.cohesion;
+  if (tissue->relaxation.terms) scene.turgor = (scene.turgor + scene.cohesion) / left - scene.cohesion;
   if (LamIsFirst(run->comm) && tissue->recorded)
     LamReportNote(&run->reporter,
                   "%s: its %" PetscInt_FMT " records belong to no grid; a grid is added, on which new ones lie",

@@ -16,15 +16,14 @@
 
 static PetscErrorCode Connect(LamProcessStudy *study, LamResponder *responder)
 {
+  LamMicrostructure timeless = study->scene->micro;
   LamFE2Run *response = &study->response;
   LamFE2Tissue *tissue;
 
   PetscFunctionBeginUser;
-  PetscCheck(response->response == LAM_FE2_DIRECT || study->scene->micro.interface != LAM_INTERFACE_LAMELLA,
-             PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: rve.interface.law: lamella: its responses depend on history, which a table does not have; write law: "
-             "bonded or contact, or solve directly, without a database",
-             study->scene->path);
+  timeless.relaxation.terms = 0; /* those of walls that relax follow from a table (relaxing.h) */
+  if (response->response != LAM_FE2_DIRECT)
+    PetscCall(LamRefuseHistory(study->scene->path, &timeless, "a table", ", or solve directly, without a database"));
   PetscCall(LamFE2TissuesCreateOne(PETSC_COMM_SELF, study->scene, response->database_path, 1, &response->tissues));
   tissue = response->tissues.tissues;
   PetscCall(LamFE2PrepareTissue(response, tissue));

@@ -18,6 +18,11 @@ solves = [sum(s.get("solves", 0) for s in map(json.loads, open(p)) if "reaction"
 assert solves[0] > 50 and solves[1] < 0.1 * solves[0], solves
 PYTHON
 
+# 2,025 points in contact, the first three of twenty steps, from an empty database: among its records is one at a kink
+sed 's/-1.2 mm/-0.18 mm/; s/steps: 20/steps: 3/' "$source/tests/scenes/cylinder-contact.yaml" >cold.yaml
+expect 0 "$lamella" fe2 cold.yaml -d cold.h5
+! grep -q 'cut back' err.txt || fail "cut back: $(cat err.txt)"
+
 # likewise in contact, in two steps on a coarse mesh
 sed 's/elements: .15, 15./elements: [2, 2]/; s/-1.2 mm/-0.2 mm/; s/steps: 20/steps: 2/' "$source/tests/scenes/cylinder-contact.yaml" >contact.yaml
 for response in direct cache; do

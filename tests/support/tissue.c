@@ -29,6 +29,23 @@ LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor)
   return load;
 }
 
+LamMicrostructure TissueLeft(LamMicrostructure micro, double left)
+{
+  const double bulk = micro.wall.bulk_modulus;
+
+  LamWallScale(&micro.wall, left, 1.0);
+  micro.wall.bulk_modulus = bulk;
+  return micro;
+}
+
+LamLoad StretchedLoad(void)
+{
+  LamLoad load = PlaneLoad(1.06, 0.08, -0.02, 1.01, 0.3);
+
+  load.F[8] = 1.03;
+  return load;
+}
+
 PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state)
 {
   return NewSealableTissue(micro, PETSC_FALSE, rve, state);

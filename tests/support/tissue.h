@@ -10,6 +10,10 @@ LamMicrostructure DefaultTissue(void);
 /* LamStressError of this tissue. */
 PetscReal StressError(const PetscReal P[9], const PetscReal P_ref[9]);
 LamLoad PlaneLoad(double F11, double F12, double F21, double F22, double turgor);
+/* Of walls that have relaxed: elastic tissue whose matrix and fibres have `left` of their moduli; a load with all of F in
+   the plane, F33 and turgor. */
+LamMicrostructure TissueLeft(LamMicrostructure micro, double left);
+LamLoad StretchedLoad(void);
 /* An RVE that is set up, and a state of it (or NULL); with lumens that may be sealed. */
 PetscErrorCode NewTissue(const LamMicrostructure *micro, LamRVE *rve, LamRVEState *state);
 PetscErrorCode NewSealableTissue(const LamMicrostructure *micro, PetscBool sealable, LamRVE *rve, LamRVEState *state);

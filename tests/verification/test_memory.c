@@ -10,16 +10,6 @@ static LamMicrostructure Relaxing(LamMicrostructure micro)
   return micro;
 }
 
-/* Elastic tissue whose matrix and fibres have `left` of their moduli. */
-static LamMicrostructure Left(LamMicrostructure micro, double left)
-{
-  const double bulk = micro.wall.bulk_modulus;
-
-  LamWallScale(&micro.wall, left, 1.0);
-  micro.wall.bulk_modulus = bulk;
-  return micro;
-}
-
 static LamLoad After(LamLoad load, double duration)
 {
   load.duration = duration;
@@ -39,14 +29,6 @@ static LamResponse Step(LamRVE rve, LamLoad load, double duration, LamRVEState s
 static void AssertClose(const LamResponse *a, const LamResponse *b, double tolerance)
 {
   assert_true(StressError(a->P, b->P) <= tolerance);
-}
-
-static LamLoad Stretched(void)
-{
-  LamLoad load = PlaneLoad(1.06, 0.08, -0.02, 1.01, 0.3);
-
-  load.F[8] = 1.03;
-  return load;
 }
 
 typedef struct {
@@ -79,15 +61,15 @@ TEST(at_once_walls_have_their_moduli_and_in_the_end_what_is_left_of_them)
     LamResponse r, expected;
 
     elastic.relaxation.terms = 0;
-    r = Step(rve, Stretched(), 0, at);
-    expected = SolveTissue(&elastic, Stretched());
+    r = Step(rve, StretchedLoad(), 0, at);
+    expected = SolveTissue(&elastic, StretchedLoad());
     AssertClose(&r, &expected, 1e-9);
-    elastic = Left(elastic, 0.4);
-    expected = SolveTissue(&elastic, Stretched());
-    r = Step(rve, Stretched(), PETSC_INFINITY, at); /* held */
+    elastic = TissueLeft(elastic, 0.4);
+    expected = SolveTissue(&elastic, StretchedLoad());
+    r = Step(rve, StretchedLoad(), PETSC_INFINITY, at); /* held */
     AssertClose(&r, &expected, 1e-8);
     CHECK(LamRVEStateReset(rve, at));
-    r = Step(rve, Stretched(), 1e12, at); /* got there slowly */
+    r = Step(rve, StretchedLoad(), 1e12, at); /* got there slowly */
     AssertClose(&r, &expected, 1e-8);
   }
 }
@@ -102,9 +84,9 @@ TEST(short_and_long_times_of_the_series_are_the_same_limits)
     {
       OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&micro);
       OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
-      const LamMicrostructure left = Left(elastic, k ? 0.4 : 1.0);
-      const LamResponse expected = SolveTissue(&left, Stretched());
-      const LamResponse r = Step(rve, Stretched(), TIME, at);
+      const LamMicrostructure left = TissueLeft(elastic, k ? 0.4 : 1.0);
+      const LamResponse expected = SolveTissue(&left, StretchedLoad());
+      const LamResponse r = Step(rve, StretchedLoad(), TIME, at);
 
       AssertClose(&r, &expected, 1e-8);
     }
@@ -114,7 +96,7 @@ TEST(short_and_long_times_of_the_series_are_the_same_limits)
 /* The state before: at another F, half relaxed. */
 static void Precede(LamRVE rve, LamRVEState state)
 {
-  LamLoad load = Stretched();
+  LamLoad load = StretchedLoad();
 
   load.F[0] += 0.03;
   load.F[1] -= 0.05;
@@ -134,12 +116,12 @@ TEST(stress_and_tangent_are_derivatives_of_the_step)
 
     Precede(rve, before);
     CHECK(LamRVEStateCopy(before, at));
-    r = Step(rve, Stretched(), 0.7 * TIME, at);
+    r = Step(rve, StretchedLoad(), 0.7 * TIME, at);
     for (int c = 0; c < 6; c++) {
       LamResponse side[4];
 
       for (int s = 0; s < 4; s++) { /* of fourth order */
-        LamLoad load = Stretched();
+        LamLoad load = StretchedLoad();
 
         *(c < 5 ? &load.F[contact_components[c]] : &load.turgor) += h * (s < 2 ? s - 2 : s - 1);
         CHECK(LamRVEStateCopy(before, at));
@@ -172,7 +154,7 @@ TEST(relaxation_is_that_of_the_correspondence_principle)
   (void)Step(rve, small, 0, at);
   for (size_t k = 0; k < sizeof(times) / sizeof(times[0]); k++) {
     const double t = times[k], G = 1 - SHARE * (1 - exp(-t / TIME)) - 0.2 * (1 - exp(-t / (10 * TIME)));
-    const LamMicrostructure left = Left(elastic, G);
+    const LamMicrostructure left = TissueLeft(elastic, G);
     const LamResponse expected = SolveTissue(&left, small), r = Step(rve, small, t - passed, at);
 
     passed = t;
@@ -220,8 +202,8 @@ TEST(a_state_from_its_bytes_goes_on_bit_for_bit)
 
   Precede(rve, at);
   CopyPacked(at, copy);
-  a = Step(rve, Stretched(), TIME, at);
-  b = Step(rve, Stretched(), TIME, copy);
+  a = Step(rve, StretchedLoad(), TIME, at);
+  b = Step(rve, StretchedLoad(), TIME, copy);
   assert_memory_equal(a.P, b.P, sizeof(a.P));
   assert_memory_equal(&a.stored, &b.stored, sizeof(a.stored));
   assert_memory_equal(&a.work, &b.work, sizeof(a.work));
@@ -247,7 +229,7 @@ TEST(a_rotation_turns_the_stress_and_leaves_the_memory)
     OWNED(LamRVE, LamRVEDestroy) rve = NewRVE(&list[k].micro);
     OWNED(LamRVEState, LamRVEStateDestroy) at = NewState(rve);
     OWNED(LamRVEState, LamRVEStateDestroy) turned = NewState(rve);
-    const LamLoad load = Stretched();
+    const LamLoad load = StretchedLoad();
     LamLoad other = load;
     LamResponse a, b;
     double P[9] = {0};
@@ -305,8 +287,8 @@ TEST(an_instant_later_nothing_has_changed)
   LamResponse a, b;
 
   Precede(rve, at);
-  a = Step(rve, Stretched(), TIME, at);
-  b = Step(rve, Stretched(), 0, at);
+  a = Step(rve, StretchedLoad(), TIME, at);
+  b = Step(rve, StretchedLoad(), 0, at);
   AssertClose(&a, &b, 1e-9);
   assert_near(b.stored, a.stored, 1e-9);
   assert_near(b.dissipated, a.dissipated, 1e-12);

@@ -47,24 +47,6 @@ static LamResponse Step(const Convolved *c, LamLoad load, double duration)
   return r;
 }
 
-/* Elastic tissue whose matrix and fibres have `left` of their moduli. */
-static LamMicrostructure Left(LamMicrostructure micro, double left)
-{
-  const double bulk = micro.wall.bulk_modulus;
-
-  LamWallScale(&micro.wall, left, 1.0);
-  micro.wall.bulk_modulus = bulk;
-  return micro;
-}
-
-static LamLoad Stretched(void)
-{
-  LamLoad load = PlaneLoad(1.06, 0.08, -0.02, 1.01, 0.3);
-
-  load.F[8] = 1.03;
-  return load;
-}
-
 static void ListTissues(LamMicrostructure list[2])
 {
   list[0] = DefaultTissue();
@@ -77,13 +59,13 @@ TEST(at_once_it_is_elastic_and_in_the_end_what_is_left)
 
   ListTissues(list);
   for (int k = 0; k < 2; k++) {
-    const LamMicrostructure left = Left(list[k], 0.4);
-    const LamResponse at_once = SolveTissue(&list[k], Stretched()), end = SolveTissue(&left, Stretched());
+    const LamMicrostructure left = TissueLeft(list[k], 0.4);
+    const LamResponse at_once = SolveTissue(&list[k], StretchedLoad()), end = SolveTissue(&left, StretchedLoad());
     Convolved c = Convolve(&list[k]);
-    LamResponse r = Step(&c, Stretched(), 0);
+    LamResponse r = Step(&c, StretchedLoad(), 0);
 
     assert_true(StressError(r.P, at_once.P) <= 1e-9);
-    r = Ask(&c, Stretched(), PETSC_INFINITY);
+    r = Ask(&c, StretchedLoad(), PETSC_INFINITY);
     assert_true(StressError(r.P, end.P) <= 1e-3);
     Free(&c);
   }
@@ -98,19 +80,19 @@ TEST(stress_and_couplings_are_derivatives_of_the_step)
   list[1].sharpness = LAM_SHARPNESS_SMOOTH;
   for (int k = 0; k < 2; k++) {
     Convolved c = Convolve(&list[k]);
-    LamLoad before = Stretched();
+    LamLoad before = StretchedLoad();
     LamResponse r;
 
     before.F[0] += 0.03;
     before.F[1] -= 0.05;
     before.turgor -= 0.1;
     (void)Step(&c, before, 0.3 * TIME);
-    r = Ask(&c, Stretched(), 0.7 * TIME);
+    r = Ask(&c, StretchedLoad(), 0.7 * TIME);
     for (int at = 0; at < 6; at++) {
       LamResponse side[4];
 
       for (int s = 0; s < 4; s++) { /* of fourth order */
-        LamLoad load = Stretched();
+        LamLoad load = StretchedLoad();
 
         *(at < 5 ? &load.F[contact_components[at]] : &load.turgor) += h * (s < 2 ? s - 2 : s - 1);
         side[s] = Ask(&c, load, 0.7 * TIME);
@@ -266,12 +248,12 @@ TEST(a_point_goes_on_from_its_bytes_and_from_its_accepted_state)
 {
   const LamMicrostructure micro = DefaultTissue();
   Convolved c = Convolve(&micro), other = Convolve(&micro);
-  LamLoad wrong = Stretched();
+  LamLoad wrong = StretchedLoad();
   LamResponse a, b;
   size_t size;
   void *bytes;
 
-  (void)Step(&c, Stretched(), 0.3 * TIME);
+  (void)Step(&c, StretchedLoad(), 0.3 * TIME);
   CHECK(LamResponderGetStateSize(c.relaxing, &size));
   bytes = test_malloc(size);
   CHECK(LamResponderSave(c.relaxing, 0, bytes));
@@ -280,8 +262,8 @@ TEST(a_point_goes_on_from_its_bytes_and_from_its_accepted_state)
   wrong.F[0] += 0.1;
   (void)Ask(&c, wrong, TIME);
   CHECK(LamResponderReject(c.relaxing));
-  a = Step(&c, Stretched(), TIME);
-  b = Step(&other, Stretched(), TIME);
+  a = Step(&c, StretchedLoad(), TIME);
+  b = Step(&other, StretchedLoad(), TIME);
   assert_memory_equal(a.P, b.P, sizeof(a.P));
   Free(&c);
   Free(&other);
