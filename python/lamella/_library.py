@@ -13,7 +13,7 @@ from typing import Any
 import cffi
 import numpy as np
 
-ffi = cffi.FFI()
+ffi: Any = cffi.FFI()  # its functions are known at run time only
 _here = Path(__file__).resolve().parent
 _source = _here.parents[1]
 
@@ -37,7 +37,7 @@ ffi.cdef(_declarations())
 _told = os.environ.get("LAMELLA_LIBRARY")
 _path = _find("liblamella.so", [Path(_told)] if _told else [_here, _source / "build"])
 library_folder = _path.parent
-library = ffi.dlopen(str(_path))
+library: Any = ffi.dlopen(str(_path))
 
 class Error(RuntimeError):
     """A fault, or what the library cannot do."""
