@@ -54,8 +54,9 @@ static PetscErrorCode CheckText(const char name[], const char text[], size_t len
 static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
 {
   static PetscErrorCode (*const parts[])(const LamNode *, LamScene *) = {
-      LamSceneBuildRVE,     LamSceneBuildStrength, LamSceneBuildLoad,  LamSceneBuildMacro, LamSceneBuildSample,
-      LamSceneBuildRegions, LamSceneBuildResponse, LamSceneCheckPatch, LamSceneBuildMap,    LamSceneBuildProcess};
+      LamSceneBuildRVE,    LamSceneBuildStrength, LamSceneBuildLoad,     LamSceneBuildMacro,
+      LamSceneBuildSample, LamSceneBuildRegions,  LamSceneBuildResponse, LamSceneCheckPatch,
+      LamSceneBuildMap,    LamSceneBuildProcess,  LamSceneCheckUncertain};
 
   PetscFunctionBeginUser;
   PetscCall(LamDocumentParse(document->name, document->text, document));

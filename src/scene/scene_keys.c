@@ -34,6 +34,7 @@ static const LamKeyTable *const tables[] = {&first,
                                             &LamMapKeys,
                                             &LamProcessKeys,
                                             &LamTransportKeys,
+                                            &LamUncertainKeys,
                                             &last};
 
 const LamKey *LamKeyAt(PetscInt i)

@@ -78,7 +78,7 @@ typedef struct {
 
 extern const LamKeyTable LamCellKeys, LamWallKeys, LamVariationKeys, LamInterfaceKeys, LamLamellaKeys, LamTissueKeys,
     LamStrengthKeys, LamLoadKeys, LamSampleKeys, LamMeshKeys, LamBoundaryKeys, LamProgramKeys, LamResponseKeys,
-    LamRegionKeys, LamMapKeys, LamProcessKeys, LamTransportKeys;
+    LamRegionKeys, LamMapKeys, LamProcessKeys, LamTransportKeys, LamUncertainKeys;
 
 /* Key i = 0, 1, ... of all tables; NULL after the last one. */
 const LamKey *LamKeyAt(PetscInt i);
@@ -130,6 +130,7 @@ PetscErrorCode LamSceneBuildBoundaries(const LamNode *root, LamScene *scene);
 /* Rejects a name that is not a side of a box or disc. `side` is its number, -1 for a Gmsh file. */
 PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, PetscInt *side);
 PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneCheckUncertain(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 /* scene_transport.c, part of the block `process`: after its water and surroundings. */
