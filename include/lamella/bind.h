@@ -59,6 +59,9 @@ LAM_EXPORT int LamBindRVESolve(LamBindRVE rve, int n, const double loads[], cons
 /* Solves the loads of the scene from undeformed tissue, as `lamella rve`. responses: room for LamBindSceneLoads of
    them; *count: those solved. */
 LAM_EXPORT int LamBindRVESolveOwnLoads(LamBindRVE rve, int derivatives, int estimate, void *responses, int *count);
+/* What is read off the curve of the loads that LamBindRVESolveOwnLoads has solved last, as `lamella rve --readings --json`
+   has it; NULL: there is no curve. Slopes are those of the curve only with derivatives. Valid until the next solve. */
+LAM_EXPORT const char *LamBindRVEReadings(LamBindRVE rve);
 /* The state that the next solve begins with, as bytes. */
 LAM_EXPORT int LamBindRVEStateSize(LamBindRVE rve, size_t *bytes);
 LAM_EXPORT int LamBindRVEGetState(LamBindRVE rve, void *bytes);

@@ -238,6 +238,13 @@ class RVE:
         return Responses(array[:count[0]])
 
     @property
+    def readings(self) -> dict[str, Any] | None:
+        """What is read off the curve of the scene's own loads, solved last with derivatives: the object `test` of
+        `lamella rve --readings --json`, in its units (MPa, kJ/m^3). None: there is no curve."""
+        text = library.LamBindRVEReadings(self._handle)
+        return None if text == ffi.NULL else json.loads(ffi.string(text))
+
+    @property
     def state(self) -> bytes:
         """The state that the next solve begins with, as bytes; of law `lamella` its history is in it."""
         state = bytearray(self._state_size())

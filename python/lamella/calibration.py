@@ -1,4 +1,4 @@
-"""Parameters of a scene from measured curves: least squares with bounds and priors, intervals, what data do not tell.
+"""Parameters of scenes from what was measured: least squares with bounds and priors, intervals, what data do not tell.
 
     fit = calibrate({"rve.wall.C1": ("0.02 MPa", "0.5 MPa")}, [Curve("tension.yaml", "tension.csv", scatter=0.03)])
     print(fit)
@@ -9,211 +9,141 @@ bounds: a trust-region Gauss-Newton method with bounds (Branch, Coleman & Li, SI
 least_squares), from several starts of a Sobol' sequence, the first in the middle. Derivatives are forward differences
 of solves, whose error is 1e-9. With the Jacobian J at the best fit the covariance is (J^T J)^-1, times the mean square
 of the residuals where the scatter is not known; intervals are Student's. A direction of the parameters in which the
-residuals hardly change is one that the data do not tell.
+residuals hardly change is one that the data do not tell. The profile of a parameter is the least sum of squares at
+given values of it: its interval has the values where that is less than the least by the square of Student's quantile,
+times the variance (Bates & Watts, Nonlinear regression analysis and its applications, 1988, ch. 6), with no straight
+line in place of the model.
 """
-import csv
+import json
 import math
 import os
-import re
+import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from . import RVE, InputError, Responses, Scene, scene_dict
-from ._library import NAMES
+from . import InputError, parallel, scene_dict
+from ._served import served
+from .measured import Curve, Experiment, Figures, experiment
+from .parameters import Parameter, Range, uncertain, varied
 from .program import SceneLike
-from .sweeps import set_key
-from .units import quantity
 
+__all__ = ["Curve", "Figures", "Parameter", "Fit", "calibrate"]
 STEP = 1e-5  #: of the scaled parameters, for forward differences: solves have ten digits, so that derivatives have five
 LOST = 1e3  #: residual of each point of a curve that the model has not
 BLIND = 0.25  #: of the way between the bounds, chosen: a direction whose 95 % interval is as large is not told
-COLUMN = re.compile(r"^\s*([A-Za-z_]+?)(?:([123])([123]))?\s*(?:\(([^)]*)\))?\s*$")
-Range = tuple[str | float, str | float]
+PROFILE = 17  #: values of a parameter in its profile, the bounds included
 
 
-@dataclass
-class Parameter:
-    """A key of scenes, its bounds, and if something is known of it before a mean and a standard deviation."""
-    key: str
-    low: str | float
-    high: str | float
-    prior: Range | None = None
-    unit: str = field(init=False, default="")
+class Problem:
+    """Residuals of experiments over the scaled parameters u [n]."""
 
-    def __post_init__(self) -> None:
-        (self._low, self.unit), (self._high, other) = _split(self.low), _split(self.high)
-        if other != self.unit:
-            raise InputError(f"{self.key}: {self.low} and {self.high} have different units")
-        if not self._low < self._high:
-            raise InputError(f"{self.key}: {self.low} is not below {self.high}")
-        self.logarithmic = self._low > 0
-        if self.prior is not None:
-            (mean, unit), (deviation, spread) = _split(self.prior[0]), _split(self.prior[1])
-            if unit != self.unit or spread != self.unit or deviation <= 0:
-                raise InputError(f"{self.key}: the prior {self.prior} is no mean and deviation in "
-                                 f"{self.unit or 'numbers'}")
-            self._prior = mean, deviation
+    def __init__(self, parameters: list[Parameter], experiments: Sequence[Experiment]) -> None:
+        self.parameters, self.experiments = parameters, list(experiments)
+        self.priors = [p for p in parameters if p.prior is not None]
+        self.known = all(e.known for e in experiments)
+        if not self.known and any(e.known for e in experiments):
+            unknown = next(e.name for e in experiments if not e.known)
+            raise InputError(f"{unknown}: has no scatter, and others have one: give that of all, or of none (a third "
+                             "column scatter of a curve)")
+        self.points = sum(len(e.y) for e in experiments) + len(self.priors)
+        self._last: list[np.ndarray] = [np.full(len(parameters), np.nan), np.empty(0)]
 
-    def value(self, u: float) -> float:
-        """At u of the way between the bounds."""
-        if self.logarithmic:
-            return self._low * (self._high / self._low) ** u
-        return self._low + u * (self._high - self._low)
+    def scene(self, of: Experiment, u: np.ndarray) -> dict[str, Any]:
+        """The scene of an experiment; a parameter is put into those that it is of."""
+        own = [(p, p.value(x)) for p, x in zip(self.parameters, u) if of.keys is None or p.key in of.keys]
+        return varied(of.scene, [p for p, _ in own], [value for _, value in own])
 
-    def place(self, value: float) -> float:
-        """Inverse of `value`."""
-        if self.logarithmic:
-            return math.log(value / self._low) / math.log(self._high / self._low)
-        return (value - self._low) / (self._high - self._low)
+    def check(self) -> None:
+        """Chooses the meshes. InputError unless all experiments can be had in the middle of the bounds."""
+        for e in self.experiments:
+            middle = np.full(len(self.parameters), 0.5)
+            e.settle(self.scene(e, middle))
+            e.check(self.scene(e, middle))
 
-    def text(self, value: float) -> str | float:
-        """As a scene has it."""
-        return f"{value!r} {self.unit}" if self.unit else value
+    def residuals(self, u: np.ndarray) -> np.ndarray:
+        if not np.array_equal(u, self._last[0]):  # the solver asks for these and the derivatives at the same place
+            self._last = [u.copy(), self._compare(u)]
+        return self._last[1]
 
-    def misfit(self, value: float) -> float:
-        return (value - self._prior[0]) / self._prior[1]
+    def _compare(self, u: np.ndarray) -> np.ndarray:
+        parts = [(e.model(self.scene(e, u)) - e.y) / e.scatter for e in self.experiments]
+        parts.append(np.array([p.misfit(p.value(x)) for p, x in zip(self.parameters, u) if p in self.priors]))
+        return np.nan_to_num(np.concatenate(parts), nan=LOST)
 
+    def jacobian(self, u: np.ndarray, free: Sequence[int] | None = None) -> np.ndarray:
+        here, columns = self.residuals(u), []
+        for k in range(len(u)) if free is None else free:
+            step = STEP if u[k] + STEP <= 1 else -STEP
+            columns.append((self._compare(u + step * np.eye(len(u))[k]) - here) / step)
+        return np.stack(columns, axis=1)
 
-def _split(value: str | float) -> tuple[float, str]:
-    """Number and unit."""
-    number, _, unit = str(value).strip().partition(" ")
-    try:
-        return float(number), unit.strip()
-    except ValueError:
-        raise InputError(f"{value}: is no number with a unit, such as 0.1 MPa") from None
+    def least(self, u: np.ndarray, fixed: int | None = None) -> tuple[np.ndarray, float]:
+        """The place of the least sum of squares, from a start, and that sum; fixed: a parameter that stays."""
+        from scipy.optimize import least_squares
+        free = [k for k in range(len(u)) if k != fixed]
+        if not free:
+            return u, float(np.sum(self.residuals(u) ** 2))
 
-
-class Curve:
-    """A measured curve, and the scene whose block `load` repeats it.
-
-    data: a CSV file whose first line names two columns, such as "F11, P11 (MPa)", or {"F11": values, "P11 (MPa)":
-    values}: members of a response, with components where it has them, in the order x, y. Where the scene begins with
-    `inflate`, F counts from the inflated tissue. scatter: standard deviation of y, a share of its largest value, or
-    with a unit ("5 kPa"); by default unknown, and found from the misfit. The model is interpolated between its states
-    (monotone cubic), so the scene's ramp needs as many steps as the curve has bends, and a state where it begins.
-    """
-
-    def __init__(self, scene: SceneLike, data: str | os.PathLike[str] | dict[str, ArrayLike],
-                 scatter: str | float | None = None) -> None:
-        self.name = os.fspath(data) if not isinstance(data, dict) else "data"
-        self.scene = scene_dict(scene)
-        columns = dict(data) if isinstance(data, dict) else _read(self.name)
-        if len(columns) != 2:
-            raise InputError(f"{self.name}: has {len(columns)} columns; two are wanted, such as F11 and P11 (MPa)")
-        self.columns = [_Column(self.name, title) for title in columns]
-        self.x, self.y = (c.si(values) for c, values in zip(self.columns, columns.values()))
-        if len(self.x) != len(self.y) or not len(self.x):
-            raise InputError(f"{self.name}: {len(self.x)} and {len(self.y)} numbers in its columns")
-        self.known = scatter is not None
-        if isinstance(scatter, str):
-            self.scatter = quantity(scatter)
-        else:
-            self.scatter = (1.0 if scatter is None else scatter) * float(np.abs(self.y).max())
-        if not self.scatter > 0:
-            raise InputError(f"{self.name}: a scatter of {scatter} is none")
-
-    def states(self, scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-        """x and y of the states of a scene that have converged."""
-        r = RVE(Scene(scene)).solve(derivatives=False)
-        x, y = (c.of(r, scene)[r.converged] for c in self.columns)
-        return x, y
-
-    def model(self, scene: dict[str, Any]) -> np.ndarray:
-        """y of a scene at the data's x; NaN where the model does not reach."""
-        from scipy.interpolate import PchipInterpolator
-        x, y = self.states(scene)
-        order = np.unique(x, return_index=True)[1]
-        if len(order) < 2:
-            return np.full(len(self.x), np.nan)
-        found = PchipInterpolator(x[order], y[order], extrapolate=False)(self.x)
-        reached = 1e-9 * (1 + np.abs(self.x))  # the ends, but for rounding
-        for end in order[0], order[-1]:
-            found[np.abs(self.x - x[end]) < reached] = y[end]
-        return found
+        def whole(v: np.ndarray) -> np.ndarray:
+            return np.insert(v, fixed, u[fixed]) if fixed is not None else v
+        found = least_squares(lambda v: self.residuals(whole(v)), np.clip(u[free], 0.01, 0.99),
+                              lambda v: self.jacobian(whole(v), free), (0, 1), x_scale=1.0, xtol=1e-8, ftol=1e-8)
+        return whole(found.x), 2 * found.cost
 
 
-    def check(self, scene: dict[str, Any]) -> None:
-        """InputError unless a scene's states reach over the data."""
-        if not np.isnan(self.model(scene)).any():
-            return
-        x, column = self.states(scene)[0], self.columns[0]
-        ends = [f"{value / column.one:.6g}" for of in (self.x, x) if len(of) for value in (of.min(), of.max())]
-        reach = f"reach from {ends[2]} to {ends[3]}" if len(x) else "do not converge"
-        raise InputError(f"{self.name}: {column.title} from {ends[0]} to {ends[1]}; with parameters in the middle of "
-                         f"their bounds the scene's states {reach}: give its load states there, or other bounds")
+def _starts(jobs: list[tuple[Problem, np.ndarray]]) -> list[tuple[np.ndarray, float]]:
+    return [problem.least(u) for problem, u in jobs]
 
 
-class _Column:
-    """A member of a response, or a component of it, in a unit."""
-
-    def __init__(self, source: str, title: str) -> None:
-        match = COLUMN.match(title)
-        if not match:
-            raise InputError(f"{source}: a column {title!r}; wanted is a member of a response, as P11 (MPa)")
-        self.title, self.member = title.strip(), match[1]
-        self.index = tuple(int(i) - 1 for i in match.group(2, 3)) if match[2] else ()
-        if self.member not in NAMES:
-            raise InputError(f"{source}: a column {self.title}: a response has no {self.member}; its members: "
-                             f"{', '.join(NAMES)}")
-        self.one = quantity(f"1 {match[4]}") if match[4] else 1.0
-
-    def si(self, values: ArrayLike) -> np.ndarray:
-        return self.one * np.asarray(values, float)
-
-    def of(self, r: Responses, scene: dict[str, Any]) -> np.ndarray:
-        values = getattr(r, self.member)
-        if self.member == "F" and "inflate" in scene["load"][0]:
-            values = values @ np.linalg.inv(values[0])
-        return np.asarray(values[(slice(None), *self.index)], float)
-
-
-def _read(path: str) -> dict[str, ArrayLike]:
-    """Columns of a CSV file by their titles."""
-    with open(path, newline="") as file:
-        rows = [(number, row) for number, row in enumerate(csv.reader(file), 1) if any(cell.strip() for cell in row)]
-    if len(rows) < 2:
-        raise InputError(f"{path}: has no numbers; wanted is a line of titles, such as F11, P11 (MPa), and lines of "
-                         "numbers")
-    titles = [cell.strip() for cell in rows[0][1]]
-    for number, row in rows[1:]:
-        try:
-            if len([float(cell) for cell in row]) == len(titles) and all(map(math.isfinite, map(float, row))):
-                continue
-        except ValueError:
-            pass
-        raise InputError(f"{path}:{number}: {', '.join(row)}: wanted are {len(titles)} numbers")
-    return {title: [float(row[k]) for _, row in rows[1:]] for k, title in enumerate(titles)}
+def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> list[list[tuple[float, float]]]:
+    """Of each job, a parameter: scaled values and the least sums of squares, from the best fit to both sides."""
+    told = []
+    for problem, best, k in jobs:
+        grid = np.linspace(0, 1, PROFILE)
+        points = [(float(best[k]), float(np.sum(problem.residuals(best) ** 2)))]
+        for side in grid[grid < best[k]][::-1], grid[grid > best[k]]:
+            u = best
+            for x in side:
+                u, cost = problem.least(np.where(np.arange(len(u)) == k, x, u), k)
+                points.append((float(x), cost))
+        told.append(sorted(points))
+    return told
 
 
 class Fit:
     """What was found: `values` and 95 % `intervals` [n, 2] in the units of the bounds, `covariance` and `correlation`
     of the scaled parameters, `chi2` (the sum of squares) with `freedom`, `starts`: the sum of squares that each start
-    has ended with, `untold`: directions of the parameters that the data do not tell, as texts."""
+    has ended with, `untold`: directions of the parameters that the data do not tell, as texts; `profiles`, by `profile`:
+    of each parameter values and sums of squares, and `profiled`, the intervals that these give, NaN at an end where the
+    data tell no bound."""
 
-    def __init__(self, parameters: list[Parameter], u: np.ndarray, J: np.ndarray, chi2: float, points: int, known: bool,
-                 starts: list[float]) -> None:
+    def __init__(self, problem: Problem, u: np.ndarray, chi2: float, starts: list[float]) -> None:
         from scipy.stats import t
-        self.parameters, self.u, self.chi2, self.known, self.starts = parameters, u, chi2, known, starts
-        self.freedom = points - len(u)
-        if self.freedom < 1 and not known:
-            raise InputError(f"{points} points do not give {len(u)} parameters and their scatter: give the scatter")
-        variance = 1.0 if known else chi2 / self.freedom
-        size, direction = np.linalg.svd(J, full_matrices=False)[1:]
+        self.problem, self.parameters, self.known = problem, problem.parameters, problem.known
+        self.u, self.chi2, self.starts = u, chi2, starts
+        self.freedom = problem.points - len(u)
+        if self.freedom < 1 and not self.known:
+            raise InputError(f"{problem.points} points do not give {len(u)} parameters and their scatter: give the "
+                             "scatter")
+        self.variance = 1.0 if self.known else chi2 / self.freedom
+        size, direction = np.linalg.svd(problem.jacobian(u), full_matrices=True)[1:]
+        size = np.pad(size, (0, len(u) - len(size)))  # fewer points than parameters
         with np.errstate(divide="ignore"):
-            spread = np.sqrt(variance) / size
-        width = 1.96 if known else t.ppf(0.975, self.freedom)
+            spread = np.sqrt(self.variance) / size
+        self.width = 1.96 if self.known else float(t.ppf(0.975, self.freedom))
         finite = np.minimum(spread, 1e6)  # of directions that nothing tells
         self.covariance = direction.T @ np.diag(finite**2) @ direction
         deviation = np.sqrt(np.diag(self.covariance))
         self.correlation = self.covariance / np.outer(deviation, deviation)
-        self.values = np.array([p.value(x) for p, x in zip(parameters, u)])
-        self.intervals = np.array([[p.value(np.clip(x + s * width * d, 0, 1)) for s in (-1, 1)]
-                                   for p, x, d in zip(parameters, u, deviation)])
-        self.untold = [self._words(v) for v, s in zip(direction, spread) if width * s > BLIND]
+        self.values = np.array([p.value(x) for p, x in zip(self.parameters, u)])
+        self.intervals = np.array([[p.value(np.clip(x + s * self.width * d, 0, 1)) for s in (-1, 1)]
+                                   for p, x, d in zip(self.parameters, u, deviation)])
+        self.untold = [self._words(v) for v, s in zip(direction, spread) if self.width * s > BLIND]
+        self.profiles: list[np.ndarray] = []
+        self.profiled = np.full((len(u), 2), np.nan)
 
     def _words(self, v: np.ndarray) -> str:
         """A direction as a product of powers, or a sum."""
@@ -224,69 +154,119 @@ class Fit:
         return (", ".join(f"{p.key} {'up' if c > 0 else 'down'}" for p, c in parts) +
                 " together: the data hardly tell them apart")
 
+    def profile(self, processes: int | None = None) -> None:
+        """Finds `profiles` and `profiled`: some 17 fits of the other parameters for each."""
+        jobs = [(self.problem, self.u, k) for k in range(len(self.u))]
+        limit = self.chi2 + self.width**2 * self.variance
+        for k, points in enumerate(parallel.each(_profiles, jobs, processes)):
+            u, cost = np.array(points).T
+            self.profiles.append(np.array([[self.parameters[k].value(x) for x in u], cost]))
+            best = int(np.argmin(cost))
+            for side, order in enumerate((range(best, 0, -1), range(best, len(u) - 1))):
+                for i in order:
+                    j = i + (1 if side else -1)
+                    if cost[j] > limit:  # a straight line between them
+                        share = (limit - cost[i]) / (cost[j] - cost[i])
+                        self.profiled[k, side] = self.parameters[k].value(u[i] + max(share, 0) * (u[j] - u[i]))
+                        break
+
     def scene(self, scene: SceneLike) -> dict[str, Any]:
         """A scene with the values that were found."""
-        return _varied(scene_dict(scene), self.parameters, self.values.tolist())
+        return varied(scene_dict(scene), self.parameters, self.values.tolist())
+
+    def _profile_words(self, k: int) -> str:
+        low, high = self.profiled[k]
+        if math.isnan(low) and math.isnan(high):
+            return "nothing: all values between the bounds will do"
+        if math.isnan(low):
+            return f"at most {high:.4g}"
+        return f"at least {low:.4g}" if math.isnan(high) else f"from {low:.4g} to {high:.4g}"
 
     def __str__(self) -> str:
-        lines = [f"{p.key:28s} {v:10.4g} {p.unit:6s} 95 % from {low:.4g} to {high:.4g}"
-                 for p, v, (low, high) in zip(self.parameters, self.values, self.intervals)]
+        lines = []
+        for k, (p, v, (low, high)) in enumerate(zip(self.parameters, self.values, self.intervals)):
+            profile = f"; by its profile {self._profile_words(k)}" if self.profiles else ""
+            lines.append(f"{p.key:28s} {v:10.4g} {p.unit:6s} 95 % from {low:.4g} to {high:.4g}{profile}")
         scatter = 0.0 if self.known else 100 * math.sqrt(self.chi2 / self.freedom)
         words = f", scatter {scatter:.2g} % of the largest value" if scatter else ""
         lines.append(f"sum of squares {self.chi2:.4g}, {self.freedom} degrees of freedom{words}; "
                      f"{sum(s < 1.01 * self.chi2 + 1e-9 for s in self.starts)} of {len(self.starts)} starts end there")
         return "\n".join(lines + self.untold)
 
+    def told(self) -> dict[str, Any]:
+        """All of it as an object of JSON."""
+        bare = lambda values: [None if math.isnan(v) else float(v) for v in values]
+        entries: list[dict[str, Any]] = []
+        for k, p in enumerate(self.parameters):
+            entry = {"key": p.key, "unit": p.unit, "bounds": [p.value(0), p.value(1)], "value": float(self.values[k]),
+                     "interval": bare(self.intervals[k])}
+            if self.profiles:
+                entry |= {"profile": self.profiles[k].tolist(), "profiled": bare(self.profiled[k])}
+            entries.append(entry)
+        of = self.problem
+        return {"lamella_calibration": 1, "parameters": entries, "correlation": self.correlation.tolist(),
+                "chi2": self.chi2, "freedom": self.freedom, "scatter_known": self.known, "starts": self.starts,
+                "limit": self.chi2 + self.width**2 * self.variance, "untold": self.untold,
+                "experiments": [e.told(of.scene(e, self.u)) for e in of.experiments]}
 
-def _varied(scene: dict[str, Any], parameters: list[Parameter], values: Sequence[float]) -> dict[str, Any]:
-    import copy
-    scene = copy.deepcopy(scene)
-    for parameter, value in zip(parameters, values):
-        set_key(scene, parameter.key, parameter.text(float(value)))
-    return scene
 
+def calibrate(parameters: dict[str, Range] | list[Parameter], curves: Sequence[Experiment], starts: int = 4,
+              processes: int | None = 1) -> Fit:
+    """Fits parameters to all experiments at once.
 
-def calibrate(parameters: dict[str, Range] | list[Parameter], curves: list[Curve], starts: int = 4) -> Fit:
-    """Fits parameters to all curves at once.
-
-    parameters: {key: (low, high)} with units, or Parameters. starts: how many, the first in the middle of the bounds.
-    InputError names a key that a scene does not take, and a column that no response has.
+    parameters: {key: (low, high)} with units, or Parameters; curves: Curves and Figures. starts: how many, the first in
+    the middle of the bounds; processes: starts at a time, None: as many as processors. InputError names a key that a
+    scene does not take, and a column or figure that no response has.
     """
-    from scipy.optimize import least_squares
     from scipy.stats import qmc
     chosen = parameters if isinstance(parameters, list) else [Parameter(k, *ends) for k, ends in parameters.items()]
     n = len(chosen)
     if not n or not curves or starts < 1:
         raise InputError("calibrate: no parameter, no curve or no start")
-    known = all(curve.known for curve in curves)
-    priors = [p for p in chosen if p.prior is not None]
-
-    last: list[np.ndarray] = [np.full(n, np.nan), np.empty(0)]  # the solver asks for both at the same place
-
-    def residuals(u: np.ndarray) -> np.ndarray:
-        if not np.array_equal(u, last[0]):
-            last[:] = u.copy(), compare(u)
-        return last[1]
-
-    def compare(u: np.ndarray) -> np.ndarray:
-        values = [p.value(x) for p, x in zip(chosen, u)]
-        parts = [(c.model(_varied(c.scene, chosen, values)) - c.y) / c.scatter for c in curves]
-        parts.append(np.array([p.misfit(v) for p, v in zip(chosen, values) if p in priors]))
-        return np.nan_to_num(np.concatenate(parts), nan=LOST)
-
-    def jacobian(u: np.ndarray) -> np.ndarray:
-        here = residuals(u)
-        columns = []
-        for k in range(n):
-            step = STEP if u[k] + STEP <= 1 else -STEP
-            columns.append((compare(u + step * np.eye(n)[k]) - here) / step)
-        return np.stack(columns, axis=1)
-
-    for curve in curves:
-        curve.check(_varied(curve.scene, chosen, [p.value(0.5) for p in chosen]))
+    problem = Problem(chosen, curves)
+    problem.check()
     places = np.vstack([np.full((1, n), 0.5), qmc.Sobol(n, scramble=False).random(max(starts, 2))[1:starts]])
-    fits = [least_squares(residuals, np.clip(u, 0.01, 0.99), jacobian, (0, 1), x_scale=1.0, xtol=1e-8, ftol=1e-8)
-            for u in places]
-    best = min(fits, key=lambda f: f.cost)
-    points = sum(len(c.x) for c in curves) + len(priors)
-    return Fit(chosen, best.x, jacobian(best.x), 2 * best.cost, points, known, [2 * f.cost for f in fits])
+    fits = parallel.each(_starts, [(problem, u) for u in places], processes)
+    best, chi2 = min(fits, key=lambda f: f[1])
+    return Fit(problem, best, chi2, [cost for _, cost in fits])
+
+
+def _shared(scenes: list[str]) -> tuple[list[Parameter], list[list[Parameter]]]:
+    """The parameters of all scenes, and those of each. InputError: scenes contradict each other."""
+    all_of: dict[str, Parameter] = {}
+    of = [uncertain(scene) for scene in scenes]
+    for scene, own in zip(scenes, of):
+        for p in own:
+            first = all_of.setdefault(p.key, p)
+            if (p.low, p.high, p.prior) != (first.low, first.high, first.prior):
+                raise InputError(f"{scene}: uncertain: {p.key}: another scene has other bounds for it; they are one "
+                                 "parameter: write the same")
+    return list(all_of.values()), of
+
+
+def run(request: dict[str, Any]) -> None:
+    """What `lamella calibrate` does."""
+    files, folder = request["files"], request.get("output")
+    scenes, data = files[::2], files[1::2]
+    parameters, of = _shared(scenes)
+    experiments = [experiment(*each) for each in zip(scenes, data, of)]
+    fit = calibrate(parameters, experiments, request.get("starts", 4), request.get("processes"))
+    if request.get("profile"):
+        fit.profile(request.get("processes"))
+    told = fit.told()
+    print(json.dumps(told) if request.get("json") else fit)
+    if not folder:
+        return
+    os.makedirs(folder, exist_ok=True)
+    (Path(folder) / "fit.json").write_text(json.dumps(told) + "\n", encoding="utf-8")
+    if not request.get("json"):
+        print(f"wrote {Path(folder) / 'fit.json'}", flush=True)
+
+
+def main(argument: str) -> int:
+    """Exit status of a request."""
+    return served("lamella calibrate", lambda: run(json.loads(argument)))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

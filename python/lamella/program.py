@@ -94,7 +94,7 @@ def run(command: str, *arguments: Any, ranks: int = 1) -> Run:
 
 
 @contextmanager
-def _path_of(scene: SceneLike) -> Iterator[str]:
+def path_of(scene: SceneLike) -> Iterator[str]:
     """The scene as a file: its own, or for as long as it is needed one beside the files that it names."""
     if isinstance(scene, dict):
         scene = Scene(scene)
@@ -115,7 +115,7 @@ def study(command: str, scene: SceneLike, ranks: int, **options: Any) -> None:
     for name, value in options.items():
         if value is not None and value is not False:
             words += [f"--{name.replace('_', '-')}", *([] if value is True else [value])]
-    with _path_of(scene) as path:
+    with path_of(scene) as path:
         told = run(command, path, *words, ranks=ranks)
     if told.warnings:
         warnings.warn("\n".join(told.warnings), stacklevel=3)

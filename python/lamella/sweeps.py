@@ -1,22 +1,16 @@
 """Many independent solves in processes of their own, so that processors are shared and a crash is an exception."""
 import itertools
 import json
-import os
-import pickle
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import RVE, InputError, Responses, Scene, rows_of, scene_dict
-from .program import SceneLike, environment
+from .parallel import each
+from .program import SceneLike
 
-MISTAKE = 2  # exit status of a worker whose scene is wrong
 Job = tuple[str, str | None, dict[str, Any]]  # path and text of a scene, arguments of RVE.solve
 
 
@@ -48,12 +42,17 @@ class Sweep:
         return rows
 
 
+def get_key(scene: Any, path: str, key: str | None = None) -> Any:
+    """What is at a path such as "rve.turgor" or "load.0"; `key` is told where it is not there."""
+    for part in path.split("."):
+        scene = scene[_at(scene, part, key or path)]
+    return scene
+
+
 def set_key(scene: Any, key: str, value: Any) -> None:
     """Sets a key as "rve.turgor.pressure" or "load.0.F"; its blocks must exist, so that a wrong one is noticed."""
-    *path, last = key.split(".")
-    block = scene
-    for part in path:
-        block = block[_at(block, part, key)]
+    path, _, last = key.rpartition(".")
+    block = get_key(scene, path, key) if path else scene
     block[_at(block, last, key) if isinstance(block, list) else last] = value
 
 
@@ -72,7 +71,7 @@ def _plain(value: Any) -> Any:
 
 
 def _solve_here(jobs: list[Job]) -> Iterator[np.ndarray]:
-    """What a worker does: responses of jobs, each from undeformed tissue. Jobs of one scene use one RVE."""
+    """Responses of jobs, each from undeformed tissue. Jobs of one scene use one RVE."""
     of, rve = None, None
     for path, text, loads in jobs:
         if rve is None or of != (path, text):
@@ -81,36 +80,9 @@ def _solve_here(jobs: list[Job]) -> Iterator[np.ndarray]:
         yield rve.solve(**loads).array
 
 
-def _solve_there(jobs: list[Job]) -> list[np.ndarray]:
-    """The same in another process."""
-    package = str(Path(__file__).resolve().parents[1])
-    paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
-    done = subprocess.run([sys.executable, "-c", "from lamella import sweeps; sweeps.work()"],
-                          input=pickle.dumps(jobs), capture_output=True, check=False,
-                          env=environment(PYTHONPATH=os.pathsep.join(paths)))
-    if done.returncode == MISTAKE:
-        raise InputError(done.stderr.decode().strip())
-    if done.returncode:
-        raise RuntimeError(f"a worker has ended with status {done.returncode}: {done.stderr.decode().strip()}")
-    return pickle.loads(done.stdout)
-
-
-def work() -> None:
-    """A worker: jobs on stdin, arrays of responses on stdout, both pickled by this package."""
-    try:
-        solved = list(_solve_here(pickle.load(sys.stdin.buffer)))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        sys.exit(MISTAKE)
-    sys.stdout.buffer.write(pickle.dumps(solved))
-
-
 def _solve(jobs: list[Job], processes: int | None) -> np.ndarray:
     """Responses of jobs [jobs, states], solved by so many processes at a time."""
-    processes = min(processes or len(os.sched_getaffinity(0)), len(jobs))
-    with ThreadPoolExecutor(processes) as pool:
-        parts = list(pool.map(_solve_there, [jobs[k::processes] for k in range(processes)]))
-    solved = [parts[k % processes][k // processes] for k in range(len(jobs))]
+    solved = each(_solve_here, jobs, processes)
     if len({len(states) for states in solved}) > 1:
         raise InputError("the scenes have different numbers of states: "
                          f"{', '.join(str(len(states)) for states in solved)}")

@@ -25,6 +25,7 @@ static const struct {
     {"tear", "the traction-separation law of a layer of tissue", LamCommandTear, PETSC_TRUE},
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"tissue", "make irregular cells by their statistics", LamCommandTissue, PETSC_FALSE},
+    {"calibrate", "find values of a scene's keys from what was measured", LamCommandCalibrate, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
     {"completion", "completion of command lines, for bash and zsh", LamCommandCompletion, PETSC_FALSE},

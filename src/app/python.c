@@ -14,6 +14,7 @@
 
 const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matplotlib"},
                 LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"},
+                LamPythonCalibrate = {"lamella.calibration", "calibration needs", "scipy"},
                 LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"};
 
 /* A package that is missing is found when it is imported, here or where a file is opened. */

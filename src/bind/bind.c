@@ -227,6 +227,7 @@ void LamBindSceneDestroy(LamBindScene scene)
 struct LamBindRVE_s {
   LamScene *scene; /* with its mesh chosen; owned */
   LamMeshes meshes;
+  char *readings; /* of the scene's own loads, solved last; NULL: none; owned */
 };
 
 static PetscErrorCode CopyScene(const LamScene *scene, LamScene **copy)
@@ -238,6 +239,7 @@ static void DestroyRVE(LamBindRVE bound)
 {
   (void)LamMeshesDestroy(&bound->meshes);
   (void)LamSceneDestroy(&bound->scene);
+  free(bound->readings);
   (void)PetscFree(bound);
 }
 
@@ -400,6 +402,15 @@ static PetscErrorCode RunStates(LamRVERun *run, LamResponse responses[])
   PetscFunctionReturn(0);
 }
 
+static void KeepReadings(LamBindRVE bound, const LamTest *test)
+{
+  json_t *read = test->count < 2 ? NULL : LamTestToJSON(test, 0, NULL);
+
+  free(bound->readings);
+  bound->readings = json_dumps(read, 0);
+  json_decref(read);
+}
+
 static PetscErrorCode SolveOwnLoads(LamBindRVE bound, int derivatives, int estimate, LamResponse responses[],
                                     int *count)
 {
@@ -412,10 +423,14 @@ static PetscErrorCode SolveOwnLoads(LamBindRVE bound, int derivatives, int estim
   PetscCall(CopyScene(bound->scene, &run.scene)); /* its loads are replaced by those that are found */
   run.meshes = bound->meshes;
   if (run.scene->inflate) run.meshes.unsealed.status = LAM_CONVERGED; /* not yet */
+  run.readings = PETSC_TRUE;
+  LamTestCreate(run.scene, &run.test);
   ierr = estimate && !run.scene->dissipating ? LamRVEEstimateCreate(run.meshes.rve[0], &run.estimate) : 0;
   if (!ierr) ierr = RunStates(&run, responses);
   bound->meshes = run.meshes;
   *count = (int)run.solved;
+  KeepReadings(bound, &run.test);
+  (void)LamTestDestroy(&run.test);
   if (!ierr && run.scene->inflate && !LamResponseHasFields(&responses[0]))
     ierr = ResetRVE(bound); /* nothing is sealed */
   (void)LamRVEEstimateDestroy(&run.estimate);
@@ -427,6 +442,11 @@ static PetscErrorCode SolveOwnLoads(LamBindRVE bound, int derivatives, int estim
 int LamBindRVESolveOwnLoads(LamBindRVE rve, int derivatives, int estimate, void *responses, int *count)
 {
   return (int)SolveOwnLoads(rve, derivatives, estimate, (LamResponse *)responses, count);
+}
+
+const char *LamBindRVEReadings(LamBindRVE rve)
+{
+  return rve->readings;
 }
 
 int LamBindRVEStateSize(LamBindRVE rve, size_t *bytes)

@@ -66,7 +66,7 @@ for wrong, of, why in (({"rve.C5.x": (1, 2)}, curve, "no block C5"), ({"rve.wall
                        (bounds, few, "give the scatter"),
                        (bounds, far, "F11 from 1 to 1.5; with parameters in the middle of their bounds the scene's states reach from 1.02 to 1.2")):
     raises(lamella.InputError, why, lambda: calibrate(wrong, [of], starts=1))
-for text, why in (("F11\n1\n", "has 1 columns"), ("F11, P11 (MPa)\n", "has no numbers"), ("F11, P11 (MPa)\n1, x\n", "bad.csv:2: 1,  x: wanted are 2"),
+for text, why in (("F11\n1\n", "has 1 columns"), ("F11, P11 (MPa)\n", "has no numbers"), ("F11, P11 (MPa)\n1, x\n", "bad.csv:2: 1, x: wanted are 2"),
                   ("F11, stress (MPa)\n1, 2\n", "stress"), ("F11, P11 (MPb)\n1, 2\n", "MPb"), ("F11, P11 (MPa)\n1, nan\n", "wanted are 2")):
     open("bad.csv", "w").write(text)
     raises(lamella.InputError, why, lambda: Curve("tension.yaml", "bad.csv"))

@@ -1,0 +1,298 @@
+"""What was measured: curves and single figures, and what scenes find for them.
+
+A file of data is CSV. A curve has the titles of two members of a response, "F11, P11 (MPa)", and may have a third
+column, `scatter`, the standard deviation of the second. Single figures have the titles "figure, value, scatter", and
+lines such as "modulus (MPa), 3.6, 0.4": what `lamella rve --readings` and `--failure` tell (FIGURES).
+"""
+import csv
+import json
+import math
+import os
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import RVE, InputError, Responses, Scene, program, scene_dict
+from ._library import NAMES
+from .parameters import Parameter
+from .program import SceneLike
+from .units import quantity
+
+COLUMN = re.compile(r"^\s*([A-Za-z_]+?)(?:([123])([123]))?\s*(?:\(([^)]*)\))?\s*$")
+FIGURE = re.compile(r"^\s*([a-z_.]+)\s*(?:\(([^)]*)\))?\s*$")
+#: what can be read off a test, and its unit in JSON
+FIGURES = {"modulus": "MPa", "poisson": "", "bioyield.strain": "", "bioyield.stress": "MPa", "peak.strain": "",
+           "peak.stress": "MPa", "energy_to_peak": "kJ/m^3", "work": "kJ/m^3", "returned": "kJ/m^3", "hysteresis": "",
+           "failure.load_factor": ""}
+OF_FAILURE = "failure."
+FACTORS = {"": 1.0, "MPa": 1e6, "kJ/m^3": 1e3}  #: SI values of the units of JSON
+ENERGIES = {"J/m^3": 1.0, "kJ/m^3": 1e3, "MJ/m^3": 1e6}  #: no dimension of scenes
+
+
+class Curve:
+    """A measured curve, and the scene whose block `load` repeats it.
+
+    data: a CSV file, or {"F11": values, "P11 (MPa)": values}: members of a response, with components where it has them,
+    in the order x, y. Where the scene begins with `inflate`, F counts from the inflated tissue. scatter: standard
+    deviation of y, a share of its largest value, or with a unit ("5 kPa"); by default that of the file, or unknown, and
+    found from the misfit. keys: of the parameters that are of this scene; None: all. The model is interpolated between
+    its states (monotone cubic), so the scene's ramp needs as many steps as the curve has bends, and a state where it
+    begins.
+    """
+
+    def __init__(self, scene: SceneLike, data: str | os.PathLike[str] | dict[str, ArrayLike],
+                 scatter: str | float | None = None, keys: set[str] | None = None) -> None:
+        self.name = os.fspath(data) if not isinstance(data, dict) else "data"
+        self.path, self.scene, self.keys = _path(scene), scene_dict(scene), keys
+        columns = dict(data) if isinstance(data, dict) else _read(self.name)
+        own = columns.pop("scatter", None)
+        if len(columns) != 2:
+            raise InputError(f"{self.name}: has {len(columns)} columns; two are wanted, such as F11 and P11 (MPa)")
+        self.columns = [_Column(self.name, title) for title in columns]
+        self.x, self.y = (c.si(values) for c, values in zip(self.columns, columns.values()))
+        if len(self.x) != len(self.y) or not len(self.x):
+            raise InputError(f"{self.name}: {len(self.x)} and {len(self.y)} numbers in its columns")
+        self.known = scatter is not None or own is not None
+        self.scatter: np.ndarray = np.full(len(self.y), float(np.abs(self.y).max()))
+        if isinstance(scatter, str):
+            self.scatter[:] = quantity(scatter)
+        elif scatter is not None:
+            self.scatter *= scatter
+        elif own is not None:
+            self.scatter = self.columns[1].si(own)
+        if not (self.scatter > 0).all():
+            raise InputError(f"{self.name}: a scatter of {self.scatter.min():g} is none")
+
+    def states(self, scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the states of a scene that have converged."""
+        r = RVE(Scene(self.path, json.dumps(scene))).solve(derivatives=False)
+        x, y = (c.of(r, scene)[r.converged] for c in self.columns)
+        return x, y
+
+    def model(self, scene: dict[str, Any]) -> np.ndarray:
+        """y of a scene at the data's x; NaN where the model does not reach."""
+        from scipy.interpolate import PchipInterpolator
+        x, y = self.states(scene)
+        order = np.unique(x, return_index=True)[1]
+        if len(order) < 2:
+            return np.full(len(self.x), np.nan)
+        found = PchipInterpolator(x[order], y[order], extrapolate=False)(self.x)
+        reached = 1e-9 * (1 + np.abs(self.x))  # the ends, but for rounding
+        for end in order[0], order[-1]:
+            found[np.abs(self.x - x[end]) < reached] = y[end]
+        return found
+
+    def check(self, scene: dict[str, Any]) -> None:
+        """InputError unless a scene's states reach over the data."""
+        if not np.isnan(self.model(scene)).any():
+            return
+        x, column = self.states(scene)[0], self.columns[0]
+        ends = [f"{value / column.one:.6g}" for of in (self.x, x) if len(of) for value in (of.min(), of.max())]
+        reach = f"reach from {ends[2]} to {ends[3]}" if len(x) else "do not converge"
+        raise InputError(f"{self.name}: {column.title} from {ends[0]} to {ends[1]}; with parameters in the middle of "
+                         f"their bounds the scene's states {reach}: give its load states there, or other bounds")
+
+    def settle(self, middle: dict[str, Any]) -> None:
+        """All solves from now on have the mesh of a scene in the middle of the bounds."""
+        self.scene = with_mesh(self.scene, self.path, middle)
+
+    def told(self, scene: dict[str, Any]) -> dict[str, Any]:
+        """Data and model in the units of the titles, for charts."""
+        x, y = self.columns
+        return {"name": self.name, "x": x.title, "y": y.title, "data": [(self.x / x.one).tolist(),
+                (self.y / y.one).tolist()], "scatter": (self.scatter / y.one).tolist() if self.known else None,
+                "model": [(of / c.one).tolist() for of, c in zip(self.states(scene), self.columns)]}
+
+
+class Figures:
+    """Single measured figures, and the scene whose test gives them.
+
+    data: a CSV file with the titles "figure, value, scatter", or {"modulus (MPa)": (3.6, 0.4)}: values and standard
+    deviations, of FIGURES. keys: as of Curve.
+    """
+
+    known = True
+
+    def __init__(self, scene: SceneLike, data: str | os.PathLike[str] | dict[str, tuple[float, float]],
+                 keys: set[str] | None = None) -> None:
+        self.name = os.fspath(data) if not isinstance(data, dict) else "data"
+        self.path, self.scene, self.keys = _path(scene), scene_dict(scene), keys
+        if not isinstance(data, dict):
+            data = _read_figures(self.name)
+        self.titles, self.names, self.ones = list(data), [], []
+        for title in data:
+            name, one = _figure(self.name, title)
+            self.names.append(name)
+            self.ones.append(one)
+        ones = np.array(self.ones)
+        self.y, self.scatter = (ones * np.array([float(v[k]) for v in data.values()]) for k in (0, 1))
+        if not (self.scatter > 0).all():
+            raise InputError(f"{self.name}: a scatter of {self.scatter.min():g} is none")
+
+    def model(self, scene: dict[str, Any]) -> np.ndarray:
+        """The figures of a scene, SI; NaN where it has none."""
+        found = read_off(scene, self.path, any(name.startswith(OF_FAILURE) for name in self.names))
+        return np.array([found.get(name, np.nan) for name in self.names], float)
+
+    def check(self, scene: dict[str, Any]) -> None:
+        """InputError unless a scene has the figures."""
+        for title, value in zip(self.titles, self.model(scene)):
+            if math.isnan(value):
+                raise InputError(f"{self.name}: {title}: with parameters in the middle of their bounds the scene has none")
+
+    def settle(self, middle: dict[str, Any]) -> None:
+        """As of Curve."""
+        self.scene = with_mesh(self.scene, self.path, middle)
+
+    def told(self, scene: dict[str, Any]) -> dict[str, Any]:
+        """As of Curve."""
+        ones = np.array(self.ones)
+        return {"name": self.name, "figures": self.titles, "data": (self.y / ones).tolist(),
+                "scatter": (self.scatter / ones).tolist(), "model": (self.model(scene) / ones).tolist()}
+
+
+Experiment = Curve | Figures
+
+
+def experiment(scene: SceneLike, path: str, parameters: list[Parameter]) -> Experiment:
+    """Of a scene and a file of data, whatever that holds."""
+    keys = {p.key for p in parameters}
+    with open(path, encoding="utf-8") as file:
+        first = next((line for line in file if line.strip()), "")
+    return Figures(scene, path, keys) if first.split(",")[0].strip() == "figure" else Curve(scene, path, keys=keys)
+
+
+def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) -> dict[str, Any]:
+    """The FIGURES of a scene's test that it has, SI; with failure also `mode` and `criterion`, texts. Bodies, processes
+    and failure are solved by the program, in a process of their own."""
+    text = Scene(path, json.dumps(scene))
+    if "load" in scene and not failure:
+        rve = RVE(text)
+        rve.solve()
+        objects = [{"test": rve.readings}]
+    else:
+        objects = _asked(text, "rve" if "load" in scene else "process" if "process" in scene else "fe2", failure)
+    found: dict[str, Any] = {}
+    for part in objects:
+        _flatten(part.get("test"), "", found)
+        _flatten(part.get("failure"), OF_FAILURE, found)
+    if found.get("work"):
+        found["hysteresis"] = 1 - found.get("returned", 0) / found["work"]
+    read: dict[str, Any] = {name: found[name] * FACTORS[unit] for name, unit in FIGURES.items()
+                            if isinstance(found.get(name), (int, float))}
+    if failure:
+        read["mode"] = found.get(OF_FAILURE + "mode", "unknown")
+        read["criterion"] = found.get(OF_FAILURE + "criterion")
+    return read
+
+
+def with_mesh(scene: dict[str, Any], path: str = "scene", middle: dict[str, Any] | None = None) -> dict[str, Any]:
+    """A scene with the mesh that is chosen for it, or for another one, so that all of a study have the same: results
+    are then smooth in the parameters, and no scene waits for the choice."""
+    with program.path_of(Scene(path, json.dumps(middle or scene))) as file:
+        mesh = program.run("check", file)[0]["mesh"]
+    chosen = {name: mesh[name] for name in ("along", "through", "grading") if name in mesh}
+    return scene | {"rve": scene["rve"] | {"mesh": (scene["rve"].get("mesh") or {}) | chosen}}
+
+
+def _asked(scene: Scene, command: str, failure: bool) -> list[dict[str, Any]]:
+    options = ["--readings"] + ["--no-estimate"] * (command == "rve") + ["--failure"] * failure
+    with program.path_of(scene) as file:
+        return program.run(command, file, *options, "--quiet").objects
+
+
+def _flatten(block: Any, head: str, found: dict[str, Any]) -> None:
+    if isinstance(block, dict):
+        for name, value in block.items():
+            _flatten(value, f"{head}{name}." if isinstance(value, dict) else f"{head}{name}", found)
+    elif block is not None:
+        found[head] = block
+
+
+def _path(scene: SceneLike) -> str:
+    """Where the files that a scene names are looked for from."""
+    return "scene" if isinstance(scene, dict) else scene.path if isinstance(scene, Scene) else \
+        os.fspath(scene) if "\n" not in os.fspath(scene) else "scene"
+
+
+class _Column:
+    """A member of a response, or a component of it, in a unit."""
+
+    def __init__(self, source: str, title: str) -> None:
+        match = COLUMN.match(title)
+        if not match:
+            raise InputError(f"{source}: a column {title!r}; wanted is a member of a response, as P11 (MPa)")
+        self.title, self.member = title.strip(), match[1]
+        self.index = tuple(int(i) - 1 for i in match.group(2, 3)) if match[2] else ()
+        if self.member not in NAMES:
+            raise InputError(f"{source}: a column {self.title}: a response has no {self.member}; its members: "
+                             f"{', '.join(NAMES)}")
+        self.one = quantity(f"1 {match[4]}") if match[4] else 1.0
+
+    def si(self, values: ArrayLike) -> np.ndarray:
+        return self.one * np.asarray(values, float)
+
+    def of(self, r: Responses, scene: dict[str, Any]) -> np.ndarray:
+        values = getattr(r, self.member)
+        if self.member == "F" and "inflate" in scene["load"][0]:
+            values = values @ np.linalg.inv(values[0])
+        return np.asarray(values[(slice(None), *self.index)], float)
+
+
+def _figure(source: str, title: str) -> tuple[str, float]:
+    """Name and SI value of the unit of a figure."""
+    match = FIGURE.match(title)
+    if not match or match[1] not in FIGURES:
+        raise InputError(f"{source}: a figure {title!r}; wanted is one of {', '.join(FIGURES)}, with its unit")
+    name, unit, own = match[1], match[2] or "", FIGURES[match[1]]
+    if bool(unit) != bool(own):
+        raise InputError(f"{source}: {title}: {'has no unit' if unit else f'a unit is missing, as ({own})'}")
+    if own == "kJ/m^3":
+        if unit not in ENERGIES:
+            raise InputError(f"{source}: {title}: the unit is none of {', '.join(ENERGIES)}")
+        return name, ENERGIES[unit]
+    return name, quantity(f"1 {unit}", "stress") if unit else 1.0
+
+
+def _rows(path: str) -> list[tuple[int, list[str]]]:
+    """Lines of a CSV file that are not empty, with their numbers."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return [(number, [cell.strip() for cell in row]) for number, row in enumerate(csv.reader(file), 1)
+                if any(cell.strip() for cell in row)]
+
+
+def _numbers(path: str, number: int, row: list[str], count: int) -> list[float]:
+    try:
+        values = [float(cell) for cell in row]
+        if len(values) == count and all(map(math.isfinite, values)):
+            return values
+    except ValueError:
+        pass
+    raise InputError(f"{path}:{number}: {', '.join(row)}: wanted are {count} numbers")
+
+
+def _read(path: str) -> dict[str, ArrayLike]:
+    """Columns of a CSV file by their titles."""
+    rows = _rows(path)
+    if len(rows) < 2:
+        raise InputError(f"{path}: has no numbers; wanted is a line of titles, such as F11, P11 (MPa), and lines of "
+                         "numbers")
+    titles = rows[0][1]
+    values = [_numbers(path, number, row, len(titles)) for number, row in rows[1:]]
+    return {title: [row[k] for row in values] for k, title in enumerate(titles)}
+
+
+def _read_figures(path: str) -> dict[str, tuple[float, float]]:
+    rows = _rows(path)
+    if rows[0][1] != ["figure", "value", "scatter"] or len(rows) < 2:
+        raise InputError(f"{path}:{rows[0][0]}: wanted is a line of titles, figure, value, scatter, and lines such as "
+                         "modulus (MPa), 3.6, 0.4")
+    told: dict[str, tuple[float, float]] = {}
+    for number, row in rows[1:]:
+        if row[0] in told:
+            raise InputError(f"{path}:{number}: {row[0]}: is there already")
+        value, scatter = _numbers(path, number, row[1:], 2)
+        told[row[0]] = value, scatter
+    return told
