@@ -169,9 +169,12 @@ const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number)
   return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
 }
 
-/* After the first state of a load from the inflated tissue: what follows counts from there. */
-static PetscErrorCode StartFromInflated(LamRVERun *run, const LamResponse *inflated)
+/* After the first state of a load from the inflated tissue: what follows counts from there. Cells that are sealed in it
+   are stiffer than the open ones that it was found with: it is solved again, where it is. */
+static PetscErrorCode StartFromInflated(LamRVERun *run, LamResponse inflated[2])
 {
+  LamLoad load = inflated->load;
+
   PetscFunctionBeginUser;
   if (!LamResponseHasFields(inflated)) {
     LamReportNote(&run->reporter, "the tissue that is free of stress was not found, and what follows counts from it: "
@@ -179,8 +182,11 @@ static PetscErrorCode StartFromInflated(LamRVERun *run, const LamResponse *infla
     run->scene->load_count = 1;
     PetscFunctionReturn(0);
   }
-  LamLoadsFromInflated(run->scene, inflated->load.F);
-  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &inflated->load));
+  LamLoadsFromInflated(run->scene, load.F);
+  if (!run->scene->sealed) PetscFunctionReturn(0);
+  PetscCall(LamMeshesSeal(&run->meshes, run->scene, &load));
+  load.duration = 0;
+  PetscCall(LamMeshesSolve(&run->meshes, &load, NULL, inflated));
   PetscFunctionReturn(0);
 }
 
@@ -229,12 +235,12 @@ PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2])
     PetscCall(SolveNext(run, responses));
   if (run->global) PetscCall(LamMeshesSearch(&run->meshes, run->scene->strategy, &responses[0]));
   if (run->meshes.stopped) PetscFunctionReturn(0);
+  if (run->scene->inflate && !run->solved) PetscCall(StartFromInflated(run, responses));
   if (run->estimate) PetscCall(LamRVEEstimateError(run->estimate, run->meshes.state[0], &responses[0]));
   run->time += run->scene->loads[run->solved].duration;
   run->solved++;
   if (run->readings || run->writer)
     PetscCall(LamTestAdd(&run->test, run->solved, &responses[0], LamRVERunControl(run, run->solved)));
-  if (run->scene->inflate && run->solved == 1) PetscCall(StartFromInflated(run, &responses[0]));
   PetscFunctionReturn(0);
 }
 

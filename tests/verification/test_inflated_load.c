@@ -1,6 +1,7 @@
 /* Loads that count from the inflated tissue, against the same states given from the tissue at rest. */
 #include "support/rve_fixture.h"
 #include "rve_run.h"
+#include <string.h>
 
 TEST_GROUP(.petsc = 1);
 
@@ -27,16 +28,21 @@ static PetscErrorCode See(void *ctx, const LamRVERun *run, const LamResponse res
 }
 
 /* Runs the load of a scene; the caller destroys the run. */
-static void Run(const char load[], Seen *seen, LamRVERun *run)
+static void RunText(const char text[], Seen *seen, LamRVERun *run)
 {
-  char text[2000];
-
-  CHECK(PetscSNPrintf(text, sizeof(text), "%sload:\n%s", CELL, load));
   *seen = (Seen){0};
   *run = (LamRVERun){.no_estimate = PETSC_TRUE, .readings = PETSC_TRUE, .state = See, .reporter = {.ctx = seen}};
   CHECK(LamSceneReadText("inflated.yaml", text, &run->scene));
   CHECK(LamRVERunPrepare(run));
   CHECK(LamRVERunSolve(run));
+}
+
+static void Run(const char load[], Seen *seen, LamRVERun *run)
+{
+  char text[2000];
+
+  CHECK(PetscSNPrintf(text, sizeof(text), "%sload:\n%s", CELL, load));
+  RunText(text, seen, run);
 }
 
 #define PULL(reference)                                                                                                \
@@ -119,6 +125,28 @@ static void AssertModulus(const char reference[])
 
 TEST_IS(ModulusIsTheSlopePerRestArea, AssertModulus("rest"));
 TEST_IS(ModulusIsTheSlopePerInflatedArea, AssertModulus("inflated"));
+
+/* The first modulus of cells that are sealed in the inflated tissue is that of cells which keep their water. */
+TEST(ModulusOfSealedTissueIsTheSlope)
+{
+  const char load[] = "  - {inflate: true}\n"
+                      "  - {F: [[0.9999, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n"
+                      "  - {F: [[1.0001, 0], [0, free]], P: [[x, x], [x, 0 MPa]]}\n",
+             *cell = CELL, *turgor = strstr(cell, "0.03 MPa"), *rest = strchr(turgor, '}');
+  char text[2000];
+  LamRVERun run;
+  Seen seen;
+
+  CHECK(PetscSNPrintf(text, sizeof(text), "%.*s, mode: sealed%sload:\n%s", (int)(rest - cell), cell, rest, load));
+  RunText(text, &seen, &run);
+  assert_int_equal(run.test.count, 3);
+  {
+    const LamTestPoint *p = run.test.points;
+
+    assert_near((p[2].stress - p[1].stress) / 2e-4, p[0].modulus, 1e-6 * p[0].modulus);
+  }
+  CHECK(LamRVERunDestroy(&run));
+}
 
 /* The work per volume at rest is the change of the energy, turgor being part of it. */
 TEST(WorkIsTheChangeOfEnergy)
