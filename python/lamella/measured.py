@@ -25,7 +25,7 @@ FIGURE = re.compile(r"^\s*([a-z_.]+)\s*(?:\(([^)]*)\))?\s*$")
 #: what can be read off a test, and its unit in JSON
 FIGURES = {"modulus": "MPa", "poisson": "", "bioyield.strain": "", "bioyield.stress": "MPa", "peak.strain": "",
            "peak.stress": "MPa", "energy_to_peak": "kJ/m^3", "work": "kJ/m^3", "returned": "kJ/m^3", "hysteresis": "",
-           "failure.load_factor": ""}
+           "failure.factor": "", "failure.strain": "", "failure.stress": "MPa"}
 OF_FAILURE = "failure."
 FACTORS = {"": 1.0, "MPa": 1e6, "kJ/m^3": 1e3}  #: SI values of the units of JSON
 ENERGIES = {"J/m^3": 1.0, "kJ/m^3": 1e3, "MJ/m^3": 1e6}  #: no dimension of scenes
@@ -178,14 +178,33 @@ def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) 
     for part in objects:
         _flatten(part.get("test"), "", found)
         _flatten(part.get("failure"), OF_FAILURE, found)
-    if found.get("work"):
+    if found.get("work") and found.get("returned"):
         found["hysteresis"] = 1 - found.get("returned", 0) / found["work"]
+    if failure:
+        found |= _at_failure(objects, found)
     read: dict[str, Any] = {name: found[name] * FACTORS[unit] for name, unit in FIGURES.items()
                             if isinstance(found.get(name), (int, float))}
     if failure:
         read["mode"] = found.get(OF_FAILURE + "mode", "unknown")
         read["criterion"] = found.get(OF_FAILURE + "criterion")
+        read["wall_over_lamella"] = found.get(OF_FAILURE + "wall_over_lamella")
     return read
+
+
+def _at_failure(objects: list[dict[str, Any]], found: dict[str, Any]) -> dict[str, float]:
+    """Strain and stress (MPa) of the test's curve where the tissue fails first; the stress between two states by a
+    straight line."""
+    if "component" not in found or OF_FAILURE + "F" not in found:
+        return {}
+    row, column = (int(i) - 1 for i in found["component"])
+    start = np.reshape(found.get("F_inflated", np.eye(3)), (3, 3))
+    strain = lambda F: (np.reshape(F, (3, 3)) @ np.linalg.inv(start))[row, column] - (row == column)
+    inflated = found.get("reference") == "inflated"
+    states = [part for part in objects if "P" in part and part["status"] == "converged"]
+    P = [np.reshape(part["from_inflated"]["P"] if inflated else part["P"], (3, 3))[row, column] for part in states]
+    x = np.array([strain(part["F"]) for part in states])
+    order, at = np.argsort(x), strain(found[OF_FAILURE + "F"])
+    return {"failure.strain": float(at), "failure.stress": float(np.interp(at, x[order], np.array(P)[order]))}
 
 
 def with_mesh(scene: dict[str, Any], path: str = "scene", middle: dict[str, Any] | None = None) -> dict[str, Any]:
