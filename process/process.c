@@ -42,19 +42,25 @@ PetscBool LamProcessWallsStayAlike(const LamScene *scene)
   return PETSC_TRUE;
 }
 
-/* Lumens are prisms of infinite length. */
+/* That of the sides of the prisms; of cells with a length that of their ends, too. */
 PetscReal LamMembraneArea(const LamMicrostructure *micro)
 {
   const LamTissue tissue = micro->tissue;
   const PetscInt cells = micro->cells[0] * micro->cells[1];
+  const PetscReal ends = micro->length > 0 ? 2 / micro->length : 0;
   PetscReal area = 0;
 
-  if (tissue) {
-    for (PetscInt c = 0; c < cells; c++) area += LamTissueInnerPerimeter(tissue, c, LamWallThickness(micro, c));
-    return area / tissue->area;
+  for (PetscInt c = 0; c < cells; c++) {
+    const PetscReal inner = LamOuterApothem(micro) - LamWallThickness(micro, c);
+
+    if (tissue)
+      area += (LamTissueInnerPerimeter(tissue, c, LamWallThickness(micro, c)) +
+               ends * LamTissueCellArea(tissue, c) * PetscSqr(inner)) /
+              tissue->area;
+    else
+      area += (2 * inner + ends * PetscSqr(inner)) / (PetscReal)cells;
   }
-  for (PetscInt c = 0; c < cells; c++) area += 2 * (LamOuterApothem(micro) - LamWallThickness(micro, c));
-  return area / (PetscReal)cells;
+  return area;
 }
 
 PetscErrorCode LamProcessCreate(const LamScene *scene, LamProcess *process)

@@ -69,6 +69,7 @@ typedef struct LamTissue_s *LamTissue; /* cells of any shape (tissue.h) */
 typedef struct {
   PetscReal wall_thickness; /* of one cell's wall, in apothems; 0 < t < 1 */
   PetscReal orientation;    /* angle of face normal 0 to the X1 axis, radian */
+  PetscReal length;         /* of cells along X3, which end walls close, in apothems; 0: prisms without ends */
   PetscBool is_patch;       /* a block of cells between grips; otherwise periodic */
   LamPatchSides sides;      /* of a patch */
   PetscInt cells[2];        /* per period along lattice vectors 0 and 1; of a patch: columns and rows; of polygons

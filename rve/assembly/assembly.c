@@ -1,3 +1,4 @@
+#include "end_walls.h"
 #include "rve_impl.h"
 
 PetscErrorCode LamGeometryCreate(LamRVE rve)
@@ -47,21 +48,26 @@ PetscReal LamSuction(LamRVE rve, const LamLoad *load)
   return rve->contact ? load->cohesion * load->F[8] : 0.0;
 }
 
-/* Potential of turgor and cohesion. */
-static PetscReal LoopEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[])
+/* Potential of turgor and cohesion, and what end walls store. */
+static PetscErrorCode LoopEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy)
 {
   const PetscReal g = LamSuction(rve, load);
-  PetscReal energy = LamTurgorEnergy(rve, load, y);
+  LamEndWalls ends;
 
-  if (g != 0.0) energy += g * LamGapAreaEvaluate(&rve->contact->gaps, load->F, y, NULL);
-  return energy;
+  PetscFunctionBeginUser;
+  *energy = LamTurgorEnergy(rve, load, y);
+  if (g != 0.0) *energy += g * LamGapAreaEvaluate(&rve->contact->gaps, load->F, y, NULL);
+  if (!(rve->micro.length > 0.0)) PetscFunctionReturn(0);
+  PetscCall(LamEndWallsEvaluate(&rve->micro, load->F, &ends));
+  *energy += rve->mesh.V0 * ends.W;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamAssembleEnergy(LamRVE rve, const LamLoad *load, const PetscReal y[], PetscReal *energy,
                                  PetscBool *valid)
 {
   PetscFunctionBeginUser;
-  *energy = LoopEnergy(rve, load, y);
+  PetscCall(LoopEnergy(rve, load, y, energy));
   if (rve->contact && !rve->contact->exact) *energy += LamSmoothEnergy(rve, load, y);
   if (rve->layer) *energy += LamLayerEnergy(rve, load, y);
   *valid = PETSC_TRUE;
@@ -98,7 +104,7 @@ PetscErrorCode LamAssemble(LamRVE rve, const LamLoad *load, const PetscReal y[],
   const PetscBool has_turgor = LamHasTurgor(rve, load);
 
   PetscFunctionBeginUser;
-  *energy = LoopEnergy(rve, load, y);
+  PetscCall(LoopEnergy(rve, load, y, energy));
   *valid = PETSC_TRUE;
   if (rve->contact && !rve->contact->exact) {
     PetscCall(LamSmoothAssemble(rve, load, y, energy, residual));

@@ -17,6 +17,7 @@
   (docs/theory/homogenisation.md, Rounding).
 */
 #include "antiplane.h"
+#include "end_walls.h"
 #include "measure.h"
 #include <lamella/ellipticity.h>
 
@@ -260,6 +261,41 @@ static void CopyResidual(LamRVE rve, PetscReal r[])
     r[pressures + k] = rve->seal.closed ? rve->residual[rve->ndof + k] : 0.0;
 }
 
+/* Adds what depends on F alone. */
+static PetscErrorCode AddEndWalls(LamRVE rve, const LamLoad *load, Condensation *c)
+{
+  const PetscReal V0 = rve->mesh.V0;
+  LamEndWalls ends;
+
+  PetscFunctionBeginUser;
+  if (!(rve->micro.length > 0.0)) PetscFunctionReturn(0);
+  PetscCall(LamEndWallsEvaluate(&rve->micro, load->F, &ends));
+  for (PetscInt q = 0; q < LAM_F_COUNT; ++q) {
+    c->Lq[q] += V0 * ends.P[LamFComponent[q]];
+    for (PetscInt r = 0; r < LAM_F_COUNT; ++r) c->Lqq[q][r] += V0 * ends.A[LamFComponent[q]][LamFComponent[r]];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The same of shear out of the section. */
+static PetscErrorCode AddShearedEndWalls(LamRVE rve, const LamLoad *load, LamAxialDerivatives *axial)
+{
+  const PetscReal V0 = rve->mesh.V0;
+  LamEndWalls ends;
+
+  PetscFunctionBeginUser;
+  if (!(rve->micro.length > 0.0)) PetscFunctionReturn(0);
+  PetscCall(LamEndWallsEvaluate(&rve->micro, load->F, &ends));
+  for (PetscInt l = 0; l < 2; ++l) {
+    PetscReal *H = axial->H[LAM_AXIAL_G + l];
+
+    axial->Lq[LAM_AXIAL_G + l] += V0 * ends.P[6 + l];
+    for (PetscInt q = 0; q < LAM_F_COUNT; ++q) H[q] += V0 * ends.A[6 + l][LamFComponent[q]];
+    for (PetscInt m = 0; m < 2; ++m) H[LAM_AXIAL_G + m] += V0 * ends.A[6 + l][6 + m];
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Corrects L_F to first order to the solution near the positions, -= L_Fy K^-1 r, and with `derivatives` sets
    H = (L_qq - R^T K^-1 R) / V0. */
 static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c, PetscBool derivatives,
@@ -294,6 +330,7 @@ static PetscErrorCode Condense(LamRVE rve, const LamLoad *load, Condensation *c,
       for (PetscInt r = 0; r < nq; ++r) H[q][r] += axial->H[q][r] / rve->mesh.V0;
     }
   }
+  if (rve->antiplane) PetscCall(AddShearedEndWalls(rve, load, axial));
   PetscCall(PetscFree2(rhs, solution));
   PetscFunctionReturn(0);
 }
@@ -331,6 +368,7 @@ static PetscErrorCode Assemble(LamRVE rve, const LamLoad *load, Condensation *c)
   PetscCall(PetscCalloc1(c->nq * c->size, &c->R));
   for (PetscInt e = 0; e < rve->mesh.element_count; ++e) AddElement(rve, load, e, c);
   AddLumen(rve, load, c);
+  PetscCall(AddEndWalls(rve, load, c));
   if (rve->contact) {
     AddGapVolume(rve, load, c);
     for (PetscInt f = 0; LamIsExact(rve) && f < rve->contact->face_count; ++f) AddContactFace(rve, f, c);

@@ -110,6 +110,7 @@ static void Describe(const LamMicrostructure *micro, FILE *out)
 {
   fprintf(out, "{\"wall_thickness\": %.12g, \"orientation\": %.12g, \"cells\": [%d, %d], ",
           Clean(micro->wall_thickness), Clean(micro->orientation), (int)micro->cells[0], (int)micro->cells[1]);
+  if (micro->length > 0) fprintf(out, "\"length\": %.12g, ", Clean(micro->length));
   if (micro->is_patch) fprintf(out, "\"patch\": {\"sides\": \"%s\"", LamPatchSidesNames[micro->sides]);
   if (micro->is_patch && micro->notch_columns)
     fprintf(out, ", \"notch\": [%d, %d]", (int)micro->notch_row, (int)micro->notch_columns);
@@ -361,11 +362,11 @@ static PetscBool ParseObject(json_t *root, LamMicrostructure *m)
   json_t *wall, *interface, *patch = NULL, *tissue = NULL, *cells_that_differ = NULL, *relaxation = NULL;
   int cells[2], along, through;
 
-  if (json_unpack(root, "{s:F, s:F, s:[i,i], s?o, s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?o, s?{s:F, s:F, s:F}}",
-                  "wall_thickness", &m->wall_thickness, "orientation", &m->orientation, "cells", &cells[0], &cells[1],
-                  "patch", &patch, "tissue", &tissue, "mesh", "along", &along, "through", &through, "grading",
-                  &m->grading, "wall", &wall, "interface", &interface, "relaxation", &relaxation, "cell",
-                  &cells_that_differ, "tearing", "strength", &m->tearing.strength, "fracture_energy",
+  if (json_unpack(root, "{s:F, s:F, s?F, s:[i,i], s?o, s?o, s:{s:i, s:i, s?F}, s:o, s:o, s?o, s?o, s?{s:F, s:F, s:F}}",
+                  "wall_thickness", &m->wall_thickness, "orientation", &m->orientation, "length", &m->length, "cells",
+                  &cells[0], &cells[1], "patch", &patch, "tissue", &tissue, "mesh", "along", &along, "through",
+                  &through, "grading", &m->grading, "wall", &wall, "interface", &interface, "relaxation", &relaxation,
+                  "cell", &cells_that_differ, "tearing", "strength", &m->tearing.strength, "fracture_energy",
                   &m->tearing.energy, "stiffness", &m->tearing.stiffness))
     return PETSC_FALSE;
   if (cells[0] < 1 || cells[1] < 1) return PETSC_FALSE;

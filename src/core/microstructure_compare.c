@@ -12,6 +12,7 @@ static const struct {
   double factor;
 } Keys[] = {
     {"wall_thickness", "rve.cell.wall_thickness over apothem", 1},
+    {"length", "rve.cell.length over apothem", 1},
     {"orientation", "rve.cell.orientation (deg)", 180 / PETSC_PI},
     {"interface.clearance", "rve.interface.clearance over apothem", 1},
     {"interface.width", "rve.interface.width over apothem", 1},

@@ -158,6 +158,18 @@ void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centre[2])
     for (PetscInt d = 0; d < 2; d++) centre[d] += tissue->corner[k][d] / (PetscReal)count;
 }
 
+PetscReal LamTissueCellArea(LamTissue tissue, PetscInt cell)
+{
+  PetscReal sum = 0.0;
+
+  for (PetscInt k = tissue->first[cell]; k < tissue->first[cell + 1]; k++) {
+    const PetscReal *x = tissue->corner[k], *y = tissue->corner[LamTissueNext(tissue, k)];
+
+    sum += 0.5 * (x[0] * y[1] - x[1] * y[0]);
+  }
+  return sum;
+}
+
 PetscReal LamTissueInnerPerimeter(LamTissue tissue, PetscInt cell, PetscReal distance)
 {
   PetscReal sum = 0.0;

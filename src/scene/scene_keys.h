@@ -117,6 +117,8 @@ PetscErrorCode LamSceneGet(const LamNode *base, const char path[], const LamNode
 
 /* The parts of a scene, in this order. */
 PetscErrorCode LamSceneBuildRVE(const LamNode *root, LamScene *scene);
+/* What cells with end walls cannot be yet; node: of their length. */
+PetscErrorCode LamSceneCheckLength(const LamNode *node, const LamMicrostructure *micro);
 /* Of walls that tear: sets the stiffness of cuts; the nodes of their energy and of the elements along a face. */
 PetscErrorCode LamSceneCheckTearing(const LamNode *energy, const LamNode *along, LamMicrostructure *micro);
 PetscErrorCode LamSceneBuildStrength(const LamNode *root, LamScene *scene);

@@ -40,6 +40,8 @@ static const LamKey region_keys[] = {
     {LENGTH("macro.regions[].cell.wall_thickness", "um"), INTO(LamRegion, micro.wall_thickness), ABOVE(0),
      .default_words = AS_RVE, .example = "20 um",
      .help = "Thickness of one cell's wall, unless a file of cells gives it."},
+    {LENGTH("macro.regions[].cell.length", "um"), INTO(LamRegion, micro.length), ABOVE(0), .default_words = AS_RVE,
+     .example = "100 um", .help = "Length of its cells, as `rve.cell.length`."},
     {ANGLE("macro.regions[].cell.orientation"), INTO(LamRegion, micro.orientation), FROM(-360), TO(360),
      .default_words = AS_RVE "; of a file of its own 0 deg", .example = "30 deg",
      .help = "Angle of face normal 0 to the X1 axis: the cells of a region, also of a file, are turned."},
@@ -113,6 +115,7 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
 {
   const LamNode *apothem = LamNodeFind(entry, "cell.apothem"), *thickness = LamNodeFind(entry, "cell.wall_thickness");
   const LamNode *clearance = LamNodeFind(entry, "interface.clearance"), *turgor = LamNodeFind(entry, "turgor.pressure");
+  const LamNode *length = LamNodeFind(entry, "cell.length");
 
   PetscFunctionBeginUser;
   LamSceneCheck(r->micro.wall_thickness < 1.0,
@@ -124,6 +127,7 @@ static PetscErrorCode CheckTissue(const LamNode *entry, LamRegion *r)
   PetscCall(LamSceneCheckLaw(LamNodeFind(entry, "interface"), r->micro.interface));
   if (!LamCellsPart(r->micro.interface)) r->cohesion = r->micro.clearance = 0;
   PetscCall(LamSceneCheckClearance(clearance ? clearance : entry, &r->scales, &r->micro));
+  PetscCall(LamSceneCheckLength(length ? length : entry, &r->micro));
   if (turgor) PetscCall(LamSceneCheckTurgor(turgor, turgor->value.number[0]));
   PetscFunctionReturn(0);
 }
@@ -201,6 +205,7 @@ static PetscErrorCode FillTissue(const LamNode *entry, const LamScene *scene, La
   PetscCall(LamSceneReadRegionTissue(entry, r, file));
   PetscCall(BuildScales(entry, scene, r));
   micro->wall_thickness = micro->wall_thickness * own->length / scales->length;
+  micro->length = micro->length * own->length / scales->length;
   micro->clearance = micro->clearance * own->length / scales->length;
   ScaleLamella(own->length / scales->length, own->stress / scales->stress, &micro->lamella);
   ScaleTearing(own->length / scales->length, own->stress / scales->stress, &micro->tearing);

@@ -22,6 +22,9 @@ static const LamKey cell_keys[] = {
      .help = "Distance a from the centre of the hexagon to the middle lamella."},
     {LENGTH("rve.cell.wall_thickness", "um"), INTO(LamScene, micro.wall_thickness), ABOVE(0),
      .default_words = WITHOUT_TISSUE, .example = "11.25 um", .help = "Thickness t of one cell's wall, less than the apothem; two lumens are 2t apart."},
+    {LENGTH("rve.cell.length", "um"), INTO(LamScene, micro.length), ABOVE(0),
+     .default_words = "prisms without end walls", .example = "150 um",
+     .help = "Length of cells across the section: walls of the same thickness close them there, and are sheared with it. With law bonded."},
     {ANGLE("rve.cell.orientation"), INTO(LamScene, micro.orientation), FROM(-360), TO(360), .default_value = "0 deg",
      .example = "30 deg", .help = "Angle of face normal 0 to the X1 axis; the other normals follow at 60 deg."},
     {INTEGER("rve.cells"), INTO(LamScene, micro.cells), .size = 2, FROM(1), TO(LAM_MAX_CELLS),
@@ -143,6 +146,21 @@ static PetscErrorCode ReadHexagon(const LamNode *rve, LamScales *scales)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LamSceneCheckLength(const LamNode *node, const LamMicrostructure *micro)
+{
+  PetscFunctionBeginUser;
+  if (!(micro->length > 0)) PetscFunctionReturn(0);
+  LamSceneCheck(micro->interface == LAM_INTERFACE_BONDED, node,
+                "end walls follow the strain of the tissue, and cells that part do not (interface.law: %s); leave it "
+                "out, or write law: bonded",
+                LamInterfaceLawNames[micro->interface]);
+  LamSceneCheck(!micro->is_patch, node, "this version of Lamella has end walls of periodic tissue alone, not of a "
+                                        "patch; leave it out");
+  LamSceneCheck(!LamWallsRelax(micro), node, "this version of Lamella has no end walls with memory "
+                                             "(rve.wall.relaxation); leave one of them out");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode BuildRVE(const LamNode *root, const LamSceneTissue *tissue, LamScene *scene)
 {
   const LamNode *rve = LamNodeFind(root, "rve"), *cells = LamNodeFind(rve, "cells");
@@ -167,6 +185,7 @@ static PetscErrorCode BuildRVE(const LamNode *root, const LamSceneTissue *tissue
   PetscCall(LamSceneBuildTissue(LamNodeFind(root, "rve.tissue"), tissue, scales, micro));
   PetscCall(LamSceneBuildCells(root, tissue, scene));
   PetscCall(LamSceneBuildInterface(root, scene));
+  PetscCall(LamSceneCheckLength(LamNodeFind(rve, "cell.length"), micro));
   PetscFunctionReturn(0);
 }
 

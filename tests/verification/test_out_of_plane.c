@@ -107,6 +107,33 @@ TEST(FibresThatLeaveTheSection)
   CheckTissue(&micro, any, 0, 1e-7);
 }
 
+/* Cells that end walls close; fibres of both laws, dispersed ones too. */
+static LamMicrostructure ClosedTissue(LamWallLawType law)
+{
+  LamMicrostructure micro = DefaultTissue();
+
+  micro.length = 2;
+  micro.wall.law = law;
+  if (law == LAM_WALL_FIBRE_EXPONENTIAL) {
+    micro.wall.k1 = 3;
+    micro.wall.k2 = 2;
+    micro.wall.dispersion = 0.1;
+  }
+  return micro;
+}
+
+static void CheckClosed(LamWallLawType law)
+{
+  const LamMicrostructure micro = ClosedTissue(law);
+
+  CheckTissue(&micro, in_plane, 0, 1e-7);
+  CheckTissue(&micro, any, 0, 1e-7);
+}
+
+TEST_IS(EndWallsWithQuadraticFibres, CheckClosed(LAM_WALL_FIBRE_MOONEY_RIVLIN));
+TEST_IS(EndWallsWithExponentialFibres, CheckClosed(LAM_WALL_FIBRE_EXPONENTIAL));
+TEST_IS(EndWallsWithoutFibres, CheckClosed(LAM_WALL_MOONEY_RIVLIN));
+
 TEST(ContactInThePlane)
 {
   const LamMicrostructure micro = ContactTissue(6, 2);
