@@ -39,15 +39,18 @@ class Row:
 
     @property
     def within(self) -> bool:
-        return self.low <= self.predicted <= self.high
+        """Whether prediction and measurement, each with its interval, have values in common."""
+        low, high = self.interval or (self.predicted, self.predicted)
+        return min(low, self.predicted) <= self.high and max(high, self.predicted) >= self.low
 
     @property
     def miss(self) -> float:
-        """Factor from the nearest end of what was measured, at least 1."""
+        """Factor between the nearest ends of what was measured and predicted, at least 1."""
         if self.within:
             return 1.0
-        near = self.low if abs(self.predicted - self.low) < abs(self.predicted - self.high) else self.high
-        return max(self.predicted / near, near / self.predicted) if self.predicted * near > 0 else math.inf
+        low, high = self.interval or (self.predicted, self.predicted)
+        below, above = (high, self.low) if high < self.low else (self.high, low)
+        return above / below if below > 0 else math.inf
 
 
 @dataclass
@@ -158,7 +161,7 @@ def figures(scenes: Sequence[Scene], failure: bool = False) -> list[dict[str, An
     return parallel.each(_read, [(each, failure) for each in scenes])
 
 
-def band(values: Sequence[float]) -> tuple[float, tuple[float, float]]:
+def band(values: Sequence[float] | np.ndarray) -> tuple[float, tuple[float, float]]:
     """The scene's own value, and the interval of the samples behind it."""
     rest = np.array([v for v in values[1:] if math.isfinite(v)])
     low, high = np.quantile(rest, [0.025, 0.975]) if len(rest) else (math.nan, math.nan)
