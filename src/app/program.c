@@ -26,6 +26,7 @@ static const struct {
     {"merge", "make one database of several", LamCommandMerge, PETSC_FALSE},
     {"tissue", "make irregular cells by their statistics", LamCommandTissue, PETSC_FALSE},
     {"calibrate", "find values of a scene's keys from what was measured", LamCommandCalibrate, PETSC_FALSE},
+    {"sensitivity", "how figures of a scene's test depend on its uncertain keys", LamCommandSensitivity, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
     {"completion", "completion of command lines, for bash and zsh", LamCommandCompletion, PETSC_FALSE},
@@ -39,7 +40,7 @@ enum { COMMAND_COUNT = PETSC_STATIC_ARRAY_LENGTH(Commands) };
 static void PrintHelp(FILE *out)
 {
   fprintf(out, "Usage: lamella " LAM_PROGRAM_USAGE "\n" LAM_PROGRAM_SUMMARY "\n\n");
-  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-10s %s\n", Commands[i].name, Commands[i].summary);
+  for (int i = 0; i < COMMAND_COUNT; i++) fprintf(out, "  %-11s %s\n", Commands[i].name, Commands[i].summary);
   fprintf(out, "\nlamella help COMMAND shows more, lamella --version the versions of the libraries.\n");
 }
 

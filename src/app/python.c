@@ -15,6 +15,7 @@
 const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matplotlib"},
                 LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"},
                 LamPythonCalibrate = {"lamella.calibration", "calibration needs", "scipy"},
+                LamPythonSensitivity = {"lamella.sensitivity", "sensitivity needs", "scipy"},
                 LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"};
 
 /* A package that is missing is found when it is imported, here or where a file is opened. */
