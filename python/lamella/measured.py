@@ -178,8 +178,9 @@ def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) 
     for part in objects:
         _flatten(part.get("test"), "", found)
         _flatten(part.get("failure"), OF_FAILURE, found)
-    if found.get("work"):
-        found["hysteresis"] = 1 - found.get("returned", 0) / found["work"]
+    if found.get("work") and found.get("returned"):  # 0: the load does not return
+        found["hysteresis"] = 1 - found["returned"] / found["work"]
+    found[OF_FAILURE + "load_factor"] = found.get(OF_FAILURE + "factor")
     read: dict[str, Any] = {name: found[name] * FACTORS[unit] for name, unit in FIGURES.items()
                             if isinstance(found.get(name), (int, float))}
     if failure:
