@@ -5,8 +5,8 @@
     page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
-`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells` and `realisations`
-say which it is. All take
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells`, `realisations`
+and `calibration` say which it is. All take
     title   text, or False: none
     size    width and height of the page, inches
     range   limits of the colour scale of the field, in its unit on the colour bar
@@ -20,10 +20,12 @@ from .. import InputError
 from .page import Page, check_path
 from .read import Source
 
-__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "save", "fields", "Page"]
+__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "calibration",
+           "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
 _TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file"),
-          "realisations": ("realisations", "what realisations tell")}
+          "realisations": ("realisations", "what realisations tell"), "calibration": ("fits", "a fit")}
+_KEYS = {"lamella_tissue": "cells", "lamella_realisations": "realisations", "lamella_calibration": "calibration"}  #: texts that files of these kinds have
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "forces", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -82,12 +84,12 @@ def _page(kind, path, options, page):
 
 
 def _kind_of_text(path):
-    """tradeoff, cells or realisations, of a file that is no HDF5; None: it may be one."""
+    """tradeoff, or one of _KEYS, of a file that is no HDF5; None: it may be one."""
     if Path(path).suffix not in (".json", ".yaml", ".yml"):
         return None
     with open(path, encoding="utf-8", errors="replace") as file:
         text = file.read()
-    return "cells" if "lamella_tissue" in text else "realisations" if "lamella_realisations" in text else "tradeoff"
+    return next((kind for key, kind in _KEYS.items() if key in text), "tradeoff")
 
 
 def draw(path, **options):
@@ -140,6 +142,11 @@ def cells(path, **options):
 def realisations(path, **options):
     """Scatter and means against the cells in a period, of a realisations.json of `rve --realisations`."""
     return _draw("realisations", path, options)
+
+
+def calibration(path, **options):
+    """Measured curves and figures with the model's, and profiles, of a fit.json of `lamella calibrate -o`."""
+    return _draw("calibration", path, options)
 
 
 def fields():
