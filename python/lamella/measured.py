@@ -174,6 +174,11 @@ def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) 
         objects = [{"test": rve.readings}]
     else:
         objects = _asked(text, "rve" if "load" in scene else "process" if "process" in scene else "fe2", failure)
+    return figures_in(objects, failure)
+
+
+def figures_in(objects: list[dict[str, Any]], failure: bool = False) -> dict[str, Any]:
+    """The same of the objects that a command has told."""
     found: dict[str, Any] = {}
     for part in objects:
         _flatten(part.get("test"), "", found)

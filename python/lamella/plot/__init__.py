@@ -5,8 +5,8 @@
     page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
-`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells`, `realisations`
-and `calibration` say which it is. All take
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells`, `realisations`,
+`calibration` and `uncertainty` say which it is. All take
     title   text, or False: none
     size    width and height of the page, inches
     range   limits of the colour scale of the field, in its unit on the colour bar
@@ -21,11 +21,13 @@ from .page import Page, check_path
 from .read import Source
 
 __all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "calibration",
-           "save", "fields", "Page"]
+           "uncertainty", "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
 _TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file"),
-          "realisations": ("realisations", "what realisations tell"), "calibration": ("fits", "a fit")}
-_KEYS = {"lamella_tissue": "cells", "lamella_realisations": "realisations", "lamella_calibration": "calibration"}  #: texts that files of these kinds have
+          "realisations": ("realisations", "what realisations tell"), "calibration": ("fits", "a fit"),
+          "uncertainty": ("bands", "what samples tell")}
+_KEYS = {"lamella_tissue": "cells", "lamella_realisations": "realisations", "lamella_calibration": "calibration",
+         "lamella_uncertainty": "uncertainty"}  #: texts that files of these kinds have
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "forces", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -147,6 +149,11 @@ def realisations(path, **options):
 def calibration(path, **options):
     """Measured curves and figures with the model's, and profiles, of a fit.json of `lamella calibrate -o`."""
     return _draw("calibration", path, options)
+
+
+def uncertainty(path, **options):
+    """Bands of an uncertainty.json of `lamella rve` or `lamella process --uncertainty`."""
+    return _draw("uncertainty", path, options)
 
 
 def fields():
