@@ -165,9 +165,10 @@ class Fit:
             for side, order in enumerate((range(best, 0, -1), range(best, len(u) - 1))):
                 for i in order:
                     j = i + (1 if side else -1)
-                    if cost[j] > limit:  # a straight line between them
-                        share = (limit - cost[i]) / (cost[j] - cost[i])
-                        self.profiled[k, side] = self.parameters[k].value(u[i] + max(share, 0) * (u[j] - u[i]))
+                    if cost[j] > limit:  # straight in the root, as a parabola is
+                        at, to, there = (math.sqrt(max(c - cost[best], 0)) for c in (cost[i], limit, cost[j]))
+                        share = (to - at) / (there - at)
+                        self.profiled[k, side] = self.parameters[k].value(u[i] + max(share, 0.0) * (u[j] - u[i]))
                         break
 
     def scene(self, scene: SceneLike) -> dict[str, Any]:

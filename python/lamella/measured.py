@@ -183,12 +183,17 @@ def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) 
         objects, complete = told.objects, told.complete
         if "load" in scene:  # whose failure may be unknown although all states have answers
             complete = all(part.get("status", "converged") == "converged" for part in objects)
+    return figures_in(objects, failure, complete)
+
+
+def figures_in(objects: list[dict[str, Any]], failure: bool = False, complete: bool = True) -> dict[str, Any]:
+    """The same of the objects that a command has told; complete: all states have answers."""
     found: dict[str, Any] = {}
     for part in objects:
         _flatten(part.get("test"), "", found)
         _flatten(part.get("failure"), OF_FAILURE, found)
-    if found.get("work") and found.get("returned"):
-        found["hysteresis"] = 1 - found.get("returned", 0) / found["work"]
+    if found.get("work") and found.get("returned"):  # 0: the load does not return
+        found["hysteresis"] = 1 - found["returned"] / found["work"]
     if failure:
         found |= _at_failure(objects, found)
     read: dict[str, Any] = {name: found[name] * FACTORS[unit] for name, unit in FIGURES.items()

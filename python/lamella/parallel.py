@@ -4,11 +4,12 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from pathlib import Path
 from typing import Any
 
-from ._library import InputError
+from . import program
+from ._library import Error, InputError
 from .program import environment
 
 MISTAKE = 2  # exit status of a worker whose input is wrong
@@ -49,3 +50,26 @@ def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: i
     with ThreadPoolExecutor(n) as pool:
         parts = list(pool.map(lambda k: _there(function, list(jobs[k::n])), range(n)))
     return [parts[k % n][k // n] for k in range(len(jobs))]
+
+
+def commands(solve: Callable[[Any], Any], jobs: Sequence[Any], processes: int | None = None,
+             progress: Callable[[int, int], None] = lambda done, total: None) -> list[Any]:
+    """Results of jobs that run commands of the program (program.run), so many at a time, or the Error of a job that has
+    none. Where the whole is interrupted, the commands that run are stopped. progress(done, total): after each."""
+    solved: dict[int, Any] = {}
+    with ThreadPoolExecutor(processes or len(os.sched_getaffinity(0))) as pool:
+        futures = {pool.submit(solve, job): k for k, job in enumerate(jobs)}
+        try:
+            for future in as_completed(futures):
+                try:
+                    solved[futures[future]] = future.result()
+                except Error as error:
+                    solved[futures[future]] = error
+                progress(len(solved), len(jobs))
+        except BaseException:
+            running = [future for future in futures if not future.cancel()]
+            program.stop()
+            while wait(running, timeout=1).not_done:  # s; one may just have started another command
+                program.stop()
+            raise
+    return [solved[k] for k in range(len(jobs))]

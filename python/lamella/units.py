@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 from ._library import InputError, call, ffi, library
 
 DIMENSIONS = ("length", "stress", "angle", "time", "temperature")
+TIMES = (("s", 1), ("min", 60), ("h", 3600), ("day", 86400))
 
 
 def quantity(text: str, dimension: str | None = None) -> float:
@@ -24,3 +25,8 @@ def to(values: ArrayLike, unit: str) -> np.ndarray:
     The shape stays. InputError: the unit is not known."""
     zero, one = quantity(f"0 {unit}"), quantity(f"1 {unit}")
     return (np.asarray(values) - zero) / (one - zero)
+
+
+def time_unit(duration: float) -> tuple[str, int]:
+    """The unit that suits a time in s, and its seconds: two of it are not longer."""
+    return [unit for unit in TIMES if unit[1] == 1 or duration >= 2 * unit[1]][-1]

@@ -200,10 +200,14 @@ typedef struct {
   const char *need;    /* "pictures need": how messages about what is missing begin */
   const char *package; /* of Python, besides NumPy */
 } LamPython;
-extern const LamPython LamPythonPlot, LamPythonTissue, LamPythonCalibrate, LamPythonSensitivity, LamPythonRealisations;
+extern const LamPython LamPythonPlot, LamPythonTissue, LamPythonCalibrate, LamPythonSensitivity, LamPythonRealisations,
+    LamPythonUncertainty;
 /* Has it do what the request asks for, a JSON object. Takes ownership of the request. *exit_status is that of the
    Python process, which has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
 PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status);
+/* Whether a study that runs the command many times, each in a process of its own, may begin; otherwise says why not.
+   study: its option; unused: the name of an option that is given and does not go with it, or NULL. */
+PetscBool LamPythonStudyFits(const char command[], const char study[], const char unused[], int *exit_status);
 
 /* ---- fe2_report.c ---- */
 /* Human-readable summary of an FE2 run, from the JSON object that its file holds. */

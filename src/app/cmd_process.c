@@ -8,6 +8,7 @@
 #include "fe2_report.h"
 #include "process_run.h"
 #include "quantity_text.h"
+#include "uncertainty.h"
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -316,8 +317,25 @@ static PetscErrorCode RunBody(const LamFE2Run *run, PetscInt frames, LamConsole 
   PetscFunctionReturn(0);
 }
 
+/* Whether --uncertainty, if it is given, fits with the other options; otherwise says what does not. */
+static PetscBool UncertaintyFits(const LamUncertainty *uncertainty, const LamFE2Run *run, const char response[],
+                                 PetscInt frames, const LamTestOptions *test, int *exit_status)
+{
+  if (!uncertainty->count && uncertainty->processes)
+    return LamUsageError("process", exit_status, "--processes is of --uncertainty N, which is missing");
+  return (PetscBool)(!uncertainty->count || LamPythonStudyFits("process", "uncertainty",
+                                                               run->database_path ? "database"
+                                                               : response         ? "response"
+                                                               : frames           ? "frames"
+                                                               : test->readings   ? "readings"
+                                                               : test->at         ? "at"
+                                                                                  : NULL,
+                                                               exit_status));
+}
+
 PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
 {
+  LamUncertainty uncertainty = {.command = "process"};
   LamFE2Run run = LAM_FE2_RUN;
   LamConsole console = {.command = "process"};
   const char *response = NULL;
@@ -336,17 +354,27 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
        "at a material point: keep the cells at N states evenly spread, for a film (default: at events, start and end)",
        &frames},
       LAM_TEST_OPTIONS(console.test, " of what the program drives"),
+      LAM_UNCERTAINTY_OPTION(uncertainty),
+      {0, "processes", LAM_OPTION_FROM_1, "N", "samples at a time (default: as many as processors)",
+       &uncertainty.processes},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per output and event on stdout", &console.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args,
-                            "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--readings]\n        "
-                            "       [--at STRAIN,...] [--json] [--quiet]",
-                            "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
-  if (done) PetscFunctionReturn(0);
+  PetscCall(
+      LamOptionsParse(args,
+                      "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--readings]\n        "
+                      "       [--at STRAIN,...] [--json] [--quiet]\n"
+                      "       lamella process SCENE --uncertainty N [--processes N] [-o FOLDER] [--json] [--quiet]",
+                      "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
+  if (done || !UncertaintyFits(&uncertainty, &run, response, frames, &console.test, exit_status))
+    PetscFunctionReturn(0);
+  if (uncertainty.count) {
+    PetscCall(LamUncertaintyRun(&uncertainty, run.scene_path, run.out_path, console.json, console.quiet, exit_status));
+    PetscFunctionReturn(0);
+  }
   if (!LamFE2ChooseResponse("process", response, &run, exit_status) ||
       !LamTestReadOptions("process", &console.test, exit_status))
     PetscFunctionReturn(0);

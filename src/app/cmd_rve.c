@@ -7,6 +7,7 @@
 #include "app.h"
 #include "rve_realisations.h"
 #include "rve_run.h"
+#include "uncertainty.h"
 #include "clock.h"
 #include <math.h>
 #include <string.h>
@@ -279,15 +280,14 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
   PetscFunctionReturn(0);
 }
 
-/* The name of an option that is given and does not go with realisations; NULL: there is none. */
-static const char *NotOfRealisations(const Command *command)
+/* The name of an option that is given and does not go with realisations or samples; NULL: there is none. */
+static const char *NotOfStudies(const Command *command)
 {
   const LamRVERun *run = &command->run;
 
   return command->tangent                   ? "tangent"
          : run->find_onset                  ? "onset"
          : run->second_mesh                 ? "second-mesh"
-         : run->find_failure                ? "failure"
          : run->global                      ? "global"
          : run->no_estimate                 ? "no-estimate"
          : run->monitor                     ? "monitor"
@@ -296,11 +296,45 @@ static const char *NotOfRealisations(const Command *command)
                                             : NULL;
 }
 
+/* Whether the options of studies fit together and with the others; otherwise says what does not. */
+static PetscBool StudiesFit(const Command *command, const LamRealisations *realisations,
+                            const LamUncertainty *uncertainty, int *exit_status)
+{
+  const char *unused = NotOfStudies(command);
+
+  if (realisations->processes && !realisations->count && !uncertainty->count)
+    return LamUsageError("rve", exit_status,
+                         "--processes is of --realisations N or --uncertainty N, which are missing");
+  if (!LamRealisationsFit(realisations, !unused && command->run.find_failure ? "failure" : unused, exit_status))
+    return PETSC_FALSE;
+  return (
+      PetscBool)(!uncertainty->count ||
+                 LamPythonStudyFits("rve", "uncertainty", realisations->count ? "realisations" : unused, exit_status));
+}
+
+static PetscErrorCode RunStudy(const Command *command, const LamRealisations *realisations, LamUncertainty *uncertainty,
+                               int *exit_status)
+{
+  const LamConsole *console = &command->console;
+
+  PetscFunctionBeginUser;
+  uncertainty->processes = realisations->processes;
+  uncertainty->failure = command->run.find_failure;
+  if (uncertainty->count)
+    PetscCall(LamUncertaintyRun(uncertainty, command->scene_path, command->run.out_path, console->json, console->quiet,
+                                exit_status));
+  else
+    PetscCall(LamRealisationsRun(realisations, command->scene_path, command->run.out_path, console->json,
+                                 console->quiet, exit_status));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
 {
   Command command = {.console.command = "rve"};
   LamRVERun *run = &command.run;
   LamRealisations realisations = {.count = 0};
+  LamUncertainty uncertainty = {.command = "rve"};
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
@@ -327,7 +361,8 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
        &realisations.count},
       {0, "cells", LAM_OPTION_TEXT, "N,...", "cells in a period of the realisations (default: the scene's tissue)",
        &realisations.cells},
-      {0, "processes", LAM_OPTION_FROM_1, "N", "realisations at a time (default: as many as processors)",
+      LAM_UNCERTAINTY_OPTION(uncertainty),
+      {0, "processes", LAM_OPTION_FROM_1, "N", "realisations or samples at a time (default: as many as processors)",
        &realisations.processes},
       {0, "monitor", LAM_OPTION_FLAG, NULL, "each Newton iteration on stderr", &run->monitor},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &command.console.quiet},
@@ -335,18 +370,18 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(
-      LamOptionsParse(args,
-                      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--readings]\n"
-                      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]\n"
-                      "       lamella rve SCENE --realisations N [--cells N,...] [--processes N] [-o FOLDER] [--json]\n"
-                      "           [--quiet]",
-                      "Solves the representative volume element along the scene's load.", options, 1,
-                      &command.scene_path, &done, exit_status));
-  if (done || !LamRealisationsFit(&realisations, NotOfRealisations(&command), exit_status)) PetscFunctionReturn(0);
-  if (realisations.count) {
-    PetscCall(LamRealisationsRun(&realisations, command.scene_path, run->out_path, command.console.json,
-                                 command.console.quiet, exit_status));
+  PetscCall(LamOptionsParse(
+      args,
+      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--readings]\n"
+      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]\n"
+      "       lamella rve SCENE --realisations N [--cells N,...] [--processes N] [-o FOLDER] [--json]\n"
+      "           [--quiet]\n"
+      "       lamella rve SCENE --uncertainty N [--failure] [--processes N] [-o FOLDER] [--json] [--quiet]",
+      "Solves the representative volume element along the scene's load.", options, 1, &command.scene_path, &done,
+      exit_status));
+  if (done || !StudiesFit(&command, &realisations, &uncertainty, exit_status)) PetscFunctionReturn(0);
+  if (realisations.count || uncertainty.count) {
+    PetscCall(RunStudy(&command, &realisations, &uncertainty, exit_status));
     PetscFunctionReturn(0);
   }
   if (!LamTestReadOptions("rve", &command.console.test, exit_status)) PetscFunctionReturn(0);

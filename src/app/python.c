@@ -5,6 +5,7 @@
 #include "app.h"
 #include <errno.h>
 #include <spawn.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,7 +17,8 @@ const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matp
                 LamPythonTissue = {"lamella.tissue.__main__", "tissue needs", "scipy"},
                 LamPythonCalibrate = {"lamella.calibration", "calibration needs", "scipy"},
                 LamPythonSensitivity = {"lamella.sensitivity", "sensitivity needs", "scipy"},
-                LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"};
+                LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"},
+                LamPythonUncertainty = {"lamella.uncertainty", "samples need", "scipy"};
 
 /* A package that is missing is found when it is imported, here or where a file is opened. */
 static const char Program[] =
@@ -105,6 +107,16 @@ static int Await(pid_t child)
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return LAM_EXIT_FAULT;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+PetscBool LamPythonStudyFits(const char command[], const char study[], const char unused[], int *exit_status)
+{
+  const char *ranks = getenv("OMPI_COMM_WORLD_SIZE");
+
+  if (unused) return LamUsageError(command, exit_status, "--%s does not go with --%s; leave it out", unused, study);
+  if (ranks && atoi(ranks) > 1)
+    return LamUsageError(command, exit_status, "--%s has processes of its own (--processes): leave mpirun out", study);
+  return PETSC_TRUE;
 }
 
 PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status)

@@ -2,27 +2,13 @@
   lamella rve --realisations: how large a period must be. The package in python/lamella/tissue makes the tissues and has
   `lamella rve` solve them.
 */
-#include <stdlib.h>
 #include "rve_realisations.h"
-
-/* Each realisation is a process of its own. */
-static PetscBool IsUnderLauncher(void)
-{
-  const char *ranks = getenv("OMPI_COMM_WORLD_SIZE");
-
-  return (PetscBool)(ranks && atoi(ranks) > 1);
-}
 
 PetscBool LamRealisationsFit(const LamRealisations *r, const char unused[], int *exit_status)
 {
-  if (!r->count && (r->cells || r->processes))
-    return LamUsageError("rve", exit_status, "--%s is of --realisations N, which is missing",
-                         r->cells ? "cells" : "processes");
-  if (r->count && unused)
-    return LamUsageError("rve", exit_status, "--%s does not go with --realisations; leave it out", unused);
-  if (r->count && IsUnderLauncher())
-    return LamUsageError("rve", exit_status, "--realisations has processes of its own (--processes): leave mpirun out");
-  return PETSC_TRUE;
+  if (!r->count && r->cells)
+    return LamUsageError("rve", exit_status, "--cells is of --realisations N, which is missing");
+  return (PetscBool)(!r->count || LamPythonStudyFits("rve", "realisations", unused, exit_status));
 }
 
 PetscErrorCode LamRealisationsRun(const LamRealisations *r, const char scene[], const char folder[], PetscBool json,

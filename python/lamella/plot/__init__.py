@@ -5,8 +5,8 @@
     page.axes[-1].axhline(0.02, color="grey")
     page.save("shear.pdf")
 
-`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells`, `realisations` and
-`sensitivity` say which it is. All take
+`draw` finds out the kind of a file; `rve`, `fe2`, `process`, `database`, `map`, `tradeoff`, `cells`, `realisations`,
+`calibration`, `uncertainty` and `sensitivity` say which it is. All take
     title   text, or False: none
     size    width and height of the page, inches
     range   limits of the colour scale of the field, in its unit on the colour bar
@@ -20,13 +20,15 @@ from .. import InputError
 from .page import Page, check_path
 from .read import Source
 
-__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "sensitivity", "save",
-           "fields", "Page"]
+__all__ = ["draw", "rve", "fe2", "process", "database", "map", "tradeoff", "cells", "realisations", "calibration",
+           "uncertainty", "sensitivity", "save", "fields", "Page"]
 _MODULES = {"rve": "states", "fe2": "bodies", "process": "processes", "database": "tables", "map": "maps"}
 _TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": ("rest", "a tissue file"),
-          "realisations": ("realisations", "what realisations tell"),
+          "realisations": ("realisations", "what realisations tell"), "calibration": ("fits", "a fit"),
+          "uncertainty": ("bands", "what samples tell"),
           "sensitivity": ("sensitivity", "what a study of sensitivity tells")}
-_MARKS = {"tissue": "cells", "realisations": "realisations", "sensitivity": "sensitivity"}  #: of text files
+_KEYS = {"lamella_tissue": "cells", "lamella_realisations": "realisations", "lamella_calibration": "calibration",
+         "lamella_uncertainty": "uncertainty", "lamella_sensitivity": "sensitivity"}  #: texts that files of these kinds have
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "forces", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -85,15 +87,12 @@ def _page(kind, path, options, page):
 
 
 def _kind_of_text(path):
-    """tradeoff, cells, realisations or sensitivity, of a file that is no HDF5; None: it may be one."""
+    """tradeoff, or one of _KEYS, of a file that is no HDF5; None: it may be one."""
     if Path(path).suffix not in (".json", ".yaml", ".yml"):
         return None
     with open(path, encoding="utf-8", errors="replace") as file:
         text = file.read()
-    for mark, kind in _MARKS.items():
-        if f"lamella_{mark}" in text:
-            return kind
-    return "tradeoff"
+    return next((kind for key, kind in _KEYS.items() if key in text), "tradeoff")
 
 
 def draw(path, **options):
@@ -152,6 +151,16 @@ def sensitivity(path, **options):
     """Sobol' indices with intervals and elasticities, a panel for each figure, of a sensitivity.json of `lamella
     sensitivity`."""
     return _draw("sensitivity", path, options)
+
+
+def calibration(path, **options):
+    """Measured curves and figures with the model's, and profiles, of a fit.json of `lamella calibrate -o`."""
+    return _draw("calibration", path, options)
+
+
+def uncertainty(path, **options):
+    """Bands of an uncertainty.json of `lamella rve` or `lamella process --uncertainty`."""
+    return _draw("uncertainty", path, options)
 
 
 def fields():

@@ -20,7 +20,7 @@ SIGNS = 30  #: of elasticities beside a panel
 NAMES = {"modulus": "modulus", "poisson": "Poisson's ratio", "bioyield.strain": "strain at bioyield",
          "bioyield.stress": "stress at bioyield", "peak.strain": "strain at the peak",
          "peak.stress": "stress at the peak", "energy_to_peak": "energy to the peak", "work": "work of loading",
-         "returned": "energy returned", "hysteresis": "hysteresis", "failure.load_factor": "load factor of failure"}
+         "returned": "energy returned", "hysteresis": "hysteresis", "failure.factor": "load factor of failure"}
 FIRST, TOTAL = LINES[0], "#a9cfe8"  #: the second is the first, paler: it holds it
 NOTE = "beside bars: elasticity, % of the figure for 1 % of the key"
 

@@ -1,11 +1,11 @@
 """Quantities of a process against time, and pages that show them beside a state."""
 import numpy as np
 
+from ..units import time_unit
 from .page import DASHES, EVENT, LINES, NOW, WIDTH, Page, legend, limits, mark, number, settle
 
 TIME_HEIGHT = 350  #: of a page with charts, points
 PICTURE_WIDTH = 210  #: of a picture beside charts, with its colour bars
-UNITS = (("s", 1), ("min", 60), ("h", 3600), ("day", 86400))
 
 
 class TimeLine:
@@ -14,7 +14,7 @@ class TimeLine:
     def __init__(self, source, n):
         self.source, self.n = source, n
         time = source.array("process/time", n, 1, finite=True).ravel()
-        self.unit, seconds = [u for u in UNITS if u[1] == 1 or time[-1] >= 2 * u[1]][-1]
+        self.unit, seconds = time_unit(time[-1])
         self.time = time / seconds
         names = source.text("process/events").split("\n")
         events = source.array("process/event", n, 1).ravel().astype(int)

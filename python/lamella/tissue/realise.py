@@ -5,20 +5,17 @@ A folder has of each realisation, K of N cells, the tissue N-K.json, its scenes 
 """
 from __future__ import annotations
 
-import ctypes
 import dataclasses
 import json
 import os
 import re
-import signal
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from .. import Error, InputError, Scene, program, scene_dict
-from .._served import served
+from .. import Error, InputError, Scene, parallel, program, scene_dict
+from .._served import end_with_program, progress as shown, served
 from . import realised, scatter
 from .file import Tissue
 from .make import Asked
@@ -26,7 +23,6 @@ from .make import Asked
 NUMBERS = 10000  #: seed = cells * NUMBERS + realisation: another one for each, below 1e9, the largest of a scene
 KEPT = ("version", "rve", "strength", "load", "accuracy")  #: blocks that `lamella rve` uses
 AT_REST = [{"F": [[1, 0], [0, 1]]}]  #: the load whose tangent isotropy is judged by
-PR_SET_PDEATHSIG = 1  # linux/prctl.h
 Object: TypeAlias = dict[str, Any]
 
 
@@ -183,23 +179,8 @@ def _solve(plan: Plan, job: Job) -> Object:
 def _solve_all(plan: Plan, jobs: list[Job], processes: int,
                progress: Callable[[int, int], None]) -> dict[Job, Object | str]:
     """Of each job what is told, or why nothing is."""
-    solved: dict[Job, Object | str] = {}
-    with ThreadPoolExecutor(processes) as pool:
-        futures = {pool.submit(_solve, plan, job): job for job in jobs}
-        try:
-            for future in as_completed(futures):
-                try:
-                    solved[futures[future]] = future.result()
-                except Error as error:
-                    solved[futures[future]] = _words(error)
-                progress(len(solved), len(jobs))
-        except BaseException:
-            running = [future for future in futures if not future.cancel()]
-            program.stop()
-            while wait(running, timeout=1).not_done:  # s; one may just have started another command
-                program.stop()
-            raise
-    return {job: solved[job] for job in jobs}
+    solved = parallel.commands(lambda job: _solve(plan, job), jobs, processes, progress)
+    return {job: _words(told) if isinstance(told, Error) else told for job, told in zip(jobs, solved)}
 
 
 def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[int] | None = None,
@@ -233,12 +214,6 @@ def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[in
     return told
 
 
-def _progress(done: int, total: int) -> None:
-    if sys.stderr.isatty():
-        print(f"\r\033[K{done} of {total} realisations" if done < total else "\r\033[K", end="", file=sys.stderr,
-              flush=True)
-
-
 def _cells(text: str | None) -> list[int] | None:
     if text is None:
         return None
@@ -254,7 +229,7 @@ def run(request: Object) -> int:
     try:
         told = realise(request["scene"], request["realisations"], _cells(request.get("cells")),
                        request.get("processes"), folder,
-                       (lambda done, total: None) if request.get("quiet") else _progress)
+                       (lambda done, total: None) if request.get("quiet") else shown("realisations"))
     except KeyboardInterrupt:
         print(f"lamella rve: stopped: the same command goes on with what is in {folder}", file=sys.stderr)
         raise
@@ -266,15 +241,7 @@ def run(request: Object) -> int:
     return program.UNSOLVED if told["failed"] else 0
 
 
-def _interrupt(number: int, _: Any) -> None:
-    for signals in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(signals, signal.SIG_IGN)  # a terminal sends one, the end of the program that started this another
-    raise KeyboardInterrupt
-
-
 def main(argument: str) -> int:
-    """Exit status of a request. It ends with the program that has started it."""
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-    for signals in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(signals, _interrupt)
+    """Exit status of a request."""
+    end_with_program()
     return served("lamella rve", lambda: run(json.loads(argument)))
