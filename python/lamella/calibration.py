@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, parallel, scene_dict
-from ._served import served
+from ._served import end_with_program, served
 from .measured import Curve, Experiment, Figures, experiment
 from .parameters import Parameter, Range, uncertain, varied
 from .program import SceneLike
@@ -266,6 +266,7 @@ def run(request: dict[str, Any]) -> None:
 
 def main(argument: str) -> int:
     """Exit status of a request."""
+    end_with_program()
     return served("lamella calibrate", lambda: run(json.loads(argument)))
 
 

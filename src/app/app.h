@@ -59,6 +59,7 @@ PetscErrorCode LamCommandMerge(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandCalibrate(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandSensitivity(LamArgs *args, int *exit_status);
+PetscErrorCode LamCommandValidate(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandPlot(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandInfo(LamArgs *args, int *exit_status);
 PetscErrorCode LamCommandCompletion(LamArgs *args, int *exit_status);
@@ -201,7 +202,7 @@ typedef struct {
   const char *package; /* of Python, besides NumPy */
 } LamPython;
 extern const LamPython LamPythonPlot, LamPythonTissue, LamPythonCalibrate, LamPythonSensitivity, LamPythonRealisations,
-    LamPythonUncertainty;
+    LamPythonUncertainty, LamPythonValidate;
 /* Has it do what the request asks for, a JSON object. Takes ownership of the request. *exit_status is that of the
    Python process, which has said what is wrong. PETSC_ERR_FILE_OPEN: there is no Python. */
 PetscErrorCode LamPythonRun(const LamPython *run, json_t *request, int *exit_status);

@@ -27,6 +27,7 @@ static const struct {
     {"tissue", "make irregular cells by their statistics", LamCommandTissue, PETSC_FALSE},
     {"calibrate", "find values of a scene's keys from what was measured", LamCommandCalibrate, PETSC_FALSE},
     {"sensitivity", "how figures of a scene's test depend on its uncertain keys", LamCommandSensitivity, PETSC_FALSE},
+    {"validate", "published experiments against what Lamella finds", LamCommandValidate, PETSC_FALSE},
     {"plot", "draw what a file holds", LamCommandPlot, PETSC_FALSE},
     {"info", "what a file holds, who wrote it, with what", LamCommandInfo, PETSC_FALSE},
     {"completion", "completion of command lines, for bash and zsh", LamCommandCompletion, PETSC_FALSE},

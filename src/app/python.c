@@ -18,6 +18,7 @@ const LamPython LamPythonPlot = {"lamella.plot.__main__", "pictures need", "matp
                 LamPythonCalibrate = {"lamella.calibration", "calibration needs", "scipy"},
                 LamPythonSensitivity = {"lamella.sensitivity", "sensitivity needs", "scipy"},
                 LamPythonRealisations = {"lamella.tissue.realise", "realisations need", "scipy"},
+                LamPythonValidate = {"lamella.validation.__main__", "validation needs", "scipy"},
                 LamPythonUncertainty = {"lamella.uncertainty", "samples need", "scipy"};
 
 /* A package that is missing is found when it is imported, here or where a file is opened. */

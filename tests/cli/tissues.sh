@@ -44,17 +44,17 @@ for name in ("apple", "pear", "tomato", "potato", "carrot", "onion"):
     compare(cells[2], ends, f"{name}: turgor and firmness")
     f = series["firmness"]
     compare(cells[3], [f[part][-1] for part in ("median", "low", "high")], f"{name}: the band of firmness")
-    event = next(e for e in first["events"] if e["name"] != "none")
+    event = next((e for e in first["events"] if e["name"] != "none"), {"name": "none", "samples": 0})
     if not cells[4].startswith(event["name"]):
         wrong.append(f"{name}: of the samples {event['name']}")
-    at = [event["at"][part] / unit for part in ("median", "low", "high")][:3 if event["samples"] > 1 else 1]
-    found = [event["samples"], *at]
+    at = [event["at"][part] / unit for part in ("median", "low", "high")][:3 if event["samples"] > 1 else 1] if "at" in event else []
+    found = [event["samples"], *at] if at else []
     compare(cells[4], found, f"{name}: {event['name']} of the samples")
     if os.environ.get("LAMELLA_SHOW"):
         g = lambda v: f"{v:.3g}" if abs(v) > 1e-6 else "0"
         print(f"| `{name}` | {own['name']}{'' if own['at'] is None else ' at ' + g(own['at'] / unit)} | {g(ends[0])} to {g(ends[1])} MPa,"
-              f" {g(ends[2])} to {g(ends[3])} MPa | {g(f['median'][-1])} ({g(f['low'][-1])} to {g(f['high'][-1])}) | {event['name']} in {event['samples']}:"
-              f" {g(found[1])}" + (f" ({g(found[2])} to {g(found[3])}) |" if len(found) > 2 else " |"))
+              f" {g(ends[2])} to {g(ends[3])} MPa | {g(f['median'][-1])} ({g(f['low'][-1])} to {g(f['high'][-1])}) | {event['name']}"
+              + (f" in {found[0]}: {g(found[1])}" if found else "") + (f" ({g(found[2])} to {g(found[3])}) |" if len(found) > 2 else " |"))
 print("\n".join(wrong), end="\n" if wrong else "")
 sys.exit(bool(wrong))
 PYTHON

@@ -18,7 +18,7 @@ from ..measured import read_off, with_mesh
 from ..parameters import uncertain, varied
 
 SCENES = Path(__file__).parent / "scenes"
-SOURCE = Path(__file__).parents[3] / "tests" / "scenes" / "tissues"
+SOURCE = Path(__file__).resolve().parents[3] / "tests" / "scenes" / "tissues"
 TISSUES = SOURCE if SOURCE.is_dir() else SCENES / "tissues"  #: docs/results/tissues.md; an installed package has its own
 SAMPLES = 40  #: 2.5 and 97.5 % of them are the extremes
 ABOUT = 0.1  #: scatter that a single figure is given whose source tells none, chosen
