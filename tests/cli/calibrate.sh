@@ -1,0 +1,72 @@
+# lamella calibrate: the example of the reference; a fit of curves and figures of several scenes, its file, mistakes.
+. "$(dirname "$0")/common.sh"
+package scipy
+
+uncertain='uncertain: [{key: rve.wall.C1, from: 0.02 MPa, to: 0.5 MPa}, {key: rve.turgor.pressure, from: 1 kPa, to: 100 kPa}]'
+{ tissue <<<"load: [{inflate: true}, {ramp: {to: [[1.2, 0], [0, 1]], steps: 8}}]"; echo "$uncertain"; } >tension.yaml
+{ tissue <<<"load: [{inflate: true}, {ramp: {to: [[1, 0.3], [0, 1]], steps: 6}}]"; echo "$uncertain"; } >shear.yaml
+cat >tension.csv <<'END'
+F11, P11 (kPa), scatter
+
+1.00, 0.0, 0.6
+1.02, 6.0, 0.6
+1.04, 11.8, 0.6
+1.06, 17.9, 0.6
+1.08, 25.1, 0.6
+1.10, 32.0, 0.6
+1.12, 40.2, 0.6
+1.15, 52.9, 0.6
+1.18, 64.6, 0.6
+1.20, 73.5, 0.6
+END
+cat >figures.csv <<'END'
+figure, value, scatter
+modulus (MPa), 0.041, 0.001
+peak.stress (kPa), 19.9, 0.6
+END
+
+expect 0 "$lamella" calibrate tension.yaml tension.csv shear.yaml figures.csv --profile -o fit
+grep -v ^wrote out.txt >told.txt
+sed -n '/^    \$ lamella calibrate/,/^$/p' "$source/docs/reference/commands.md" | sed -n '2,$s/^    //p' >shown.txt
+diff told.txt shown.txt || fail "the reference shows another fit"
+python3 - <<'PYTHON' || fail "fit.json"
+import json
+told = json.load(open("fit/fit.json"))
+assert [p["key"] for p in told["parameters"]] == ["rve.wall.C1", "rve.turgor.pressure"], told
+for p in told["parameters"]:
+    assert p["bounds"][0] < p["profiled"][0] < p["value"] < p["profiled"][1] < p["bounds"][1], p
+    assert abs(min(p["profile"][1]) - told["chi2"]) < 1e-6 * told["chi2"] + 1e-9, p
+curve, figures = told["experiments"]
+assert len(curve["data"][0]) == 10 and figures["figures"] == ["modulus (MPa)", "peak.stress (kPa)"], told
+PYTHON
+
+# a key of one scene alone leaves the other as it is; keys of both are one parameter
+sed 's/, {key: rve.turgor.pressure.*}\]/]/' tension.yaml >one.yaml
+expect 0 "$lamella" calibrate one.yaml tension.csv shear.yaml figures.csv --starts 1
+sed 's/to: 0.5 MPa/to: 0.4 MPa/' shear.yaml >other.yaml
+
+# data that no values repeat are told to be such
+sed 's/^\(1.*\), \(.*\), 0.6/\1, -\2, 0.6/' tension.csv >turned.csv
+expect 0 -o "the scenes do not repeat the data within their scatter" "$lamella" calibrate tension.yaml turned.csv --starts 1
+
+refused() { # WORDS ARGUMENT...
+  expect 2 "$lamella" calibrate "${@:2}" --starts 1
+  has err.txt "$1"
+}
+refused "other.yaml: uncertain: rve.wall.C1: another scene has other bounds for it" tension.yaml tension.csv other.yaml figures.csv
+sed '/^uncertain/d' tension.yaml >known.yaml
+refused 'known.yaml: has no block `uncertain`' known.yaml tension.csv
+sed 's/, 0.6$//; s/, scatter//' tension.csv >bare.csv
+refused "bare.csv: has no scatter, and others have one" tension.yaml bare.csv shear.yaml figures.csv
+sed 's/modulus (MPa)/modulus/' figures.csv >unit.csv
+refused "unit.csv: modulus: a unit is missing, as (MPa)" shear.yaml unit.csv
+sed 's/modulus/stiffness/' figures.csv >name.csv
+refused "name.csv: a figure 'stiffness (MPa)'; wanted is one of modulus" shear.yaml name.csv
+sed 's/^1.20/1.30/' tension.csv >far.csv
+refused "F11 from 1 to 1.3; with parameters in the middle of their bounds the scene's states reach from 1 to 1.2" tension.yaml far.csv
+sed 's/41, 0.001/41, 0/' figures.csv >certain.csv
+refused "a scatter of 0 is none" shear.yaml certain.csv
+expect 1 "$lamella" calibrate tension.yaml tension.csv shear.yaml
+has err.txt "shear.yaml has no data"
+expect 4 "$lamella" calibrate tension.yaml nothing.csv
+has err.txt "nothing.csv"
