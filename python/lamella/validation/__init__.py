@@ -41,7 +41,7 @@ class Row:
     def within(self) -> bool:
         """Whether prediction and measurement, each with its interval, have values in common."""
         low, high = self.interval or (self.predicted, self.predicted)
-        return min(low, self.predicted) <= self.high and max(high, self.predicted) >= self.low
+        return bool(min(low, self.predicted) <= self.high and max(high, self.predicted) >= self.low)
 
     @property
     def miss(self) -> float:
@@ -50,7 +50,7 @@ class Row:
             return 1.0
         low, high = self.interval or (self.predicted, self.predicted)
         below, above = (high, self.low) if high < self.low else (self.high, low)
-        return above / below if below > 0 else math.inf
+        return float(above / below) if below > 0 else math.inf
 
 
 @dataclass

@@ -1,6 +1,7 @@
 """What `lamella validate` does: solves the experiments, tells what agrees, and writes the page and its picture."""
 import dataclasses
 import json
+import math
 import sys
 import time
 from pathlib import Path
@@ -14,7 +15,7 @@ from .page import counts, misses, number, page, summary
 
 def _told(e: Experiment) -> dict[str, Any]:
     """As an object of JSON."""
-    return {"name": e.name, "title": e.title, "source": e.source, "verdict": e.verdict, "miss": e.miss,
+    return {"name": e.name, "title": e.title, "source": e.source, "verdict": e.verdict, "miss": e.miss if math.isfinite(e.miss) else None,
             "rows": [dataclasses.asdict(row) | {"within": row.within} for row in e.rows],
             "modes": [dataclasses.asdict(mode) | {"right": mode.right} for mode in e.modes]}
 

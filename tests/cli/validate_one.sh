@@ -1,0 +1,20 @@
+# lamella validate: one experiment, as JSON; names; mistakes.
+. "$(dirname "$0")/common.sh"
+package scipy
+
+expect 0 "$lamella" validate --list
+has out.txt '^calbo-nery$' '^paper$'
+expect 0 "$lamella" validate --only calbo-nery,paper --json
+python3 - <<'PYTHON' || fail "the objects"
+import json
+calbo, paper, last = map(json.loads, open("out.txt"))
+assert calbo["verdict"] == "within" and len(calbo["rows"]) == 5 and paper["verdict"] == "none", (calbo, paper)
+for row in calbo["rows"]:
+    law = (row["low"] + row["high"]) / 2
+    assert abs(row["predicted"] / law - 1) < 1e-3, row  # docs/results/validation.md: 0.07 %
+assert all(mode["right"] for mode in paper["modes"]), paper
+assert last["summary"] == {"experiments": 2, "predicted": 1, "within": 1, "modes": 3, "right": 3}, last
+PYTHON
+expect 2 -e "no-such: there is no such experiment; there are calbo-nery" "$lamella" validate --only no-such
+touch file
+expect 4 "$lamella" validate --only paper -o file/folder
