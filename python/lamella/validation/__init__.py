@@ -19,7 +19,7 @@ from ..parameters import uncertain, varied
 
 SCENES = Path(__file__).parent / "scenes"
 SOURCE = Path(__file__).resolve().parents[3] / "tests" / "scenes" / "tissues"
-TISSUES = SOURCE if SOURCE.is_dir() else SCENES / "tissues"  #: docs/results/tissues.md; an installed package has its own
+TISSUES = SOURCE if SOURCE.is_dir() else SCENES / "tissues"  #: an installed package has them
 SAMPLES = 40  #: 2.5 and 97.5 % of them are the extremes
 ABOUT = 0.1  #: scatter that a single figure is given whose source tells none, chosen
 

@@ -4,6 +4,7 @@ import json
 import math
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ from .page import counts, misses, number, page, summary
 
 def _told(e: Experiment) -> dict[str, Any]:
     """As an object of JSON."""
-    return {"name": e.name, "title": e.title, "source": e.source, "verdict": e.verdict, "miss": e.miss if math.isfinite(e.miss) else None,
+    return {"name": e.name, "title": e.title, "source": e.source, "verdict": e.verdict,
+            "miss": e.miss if math.isfinite(e.miss) else None,
             "rows": [dataclasses.asdict(row) | {"within": row.within} for row in e.rows],
             "modes": [dataclasses.asdict(mode) | {"right": mode.right} for mode in e.modes]}
 
@@ -23,7 +25,7 @@ def _told(e: Experiment) -> dict[str, Any]:
 def _print(e: Experiment, seconds: float) -> None:
     print(f"{e.name}: {e.title} ({seconds:.0f} s)")
     for row in e.rows:
-        word = "fitted" if row.fitted else "agrees" if row.within else f"misses by a factor of {row.miss:.2g}"
+        word = "fitted" if row.fitted else "agrees" if row.within else f"misses by a factor of {number(row.miss)}"
         print(f"  {row.what}: {number(row.predicted)} {row.unit}".rstrip() +
               f", measured {number(row.low)} to {number(row.high)}: {word}")
     for mode in e.modes:
@@ -58,11 +60,10 @@ def run(request: dict[str, Any]) -> None:
 
 
 def _write(folder: Path, told: list[Experiment], silent: bool) -> None:
-    from ..plot import save
-    from ..plot.validation import draw
+    plot, picture = (import_module(f"lamella.plot{part}") for part in ("", ".validation"))
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "validation.md").write_text(page(told), encoding="utf-8")
-    save(draw(told), str(folder / "validation.png"), 200)
+    plot.save(picture.draw(told), str(folder / "validation.png"), 200)
     if not silent:
         print(f"wrote {folder / 'validation.md'} and {folder / 'validation.png'}", flush=True)
 

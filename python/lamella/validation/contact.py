@@ -24,5 +24,6 @@ def calbo_nery() -> Experiment:
         "$\\alpha=1-\\sqrt{v_G/0.0931}$ of their sides, and the pressure that holds the tissue together is $\\alpha$ "
         "times the turgor. Allowed: 0.5 %.",
         "Nothing. Walls of 1/400 of the cell's half width, so that their bending hardly counts.",
-        "Contact of cells is right. Walls that are thicker bend beside the corners and hold cells apart there: at 1/100 "
+        "Contact of cells is right. Walls that are thicker bend beside the corners and hold cells apart there: at "
+        "1/100 "
         "of the half width the pressure is 0.2 % less at $\\alpha=0.77$, 2 % at 0.98 (measured once).", rows)

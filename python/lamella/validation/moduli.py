@@ -12,8 +12,9 @@ from ..calibration import Figures, calibrate
 from . import Experiment, Mode, Row, Scene, about, band, changed, figures, pulled, samples, tissue
 
 UNIAXIAL = 0.75  #: Young's modulus over the modulus in plane strain, of an incompressible isotropic solid
-PLANE = "Lamella's cells are prisms, so that a modulus is one in plane strain; 3/4 of it is compared, as of an isotropic " \
-        "incompressible solid."
+PLANE = ("Lamella's tissue is stretched in a section and cannot move along the third direction; a free sample can, and "
+         "its modulus is compared with 3/4 of that, as of a material that is alike in all directions and keeps its "
+         "volume.")
 
 
 def _potato() -> Scene:
@@ -41,13 +42,14 @@ def nilsson() -> Experiment:
     rows = [Row("rise of Young's modulus with turgor", "MPa/MPa", *about(3.6), *band(slope)),
             Row("Young's modulus without turgor", "MPa", *about(2.5), *band(E[:, 0] - slope * 0.01))]
     return Experiment(
-        "nilsson", "Potato: stiffness against turgor", "Nilsson, Hertz & Falk, Physiol. Plant. 11 (1958)",
+        "nilsson", "Potato: stiffness against turgor", "Nilsson, Hertz & Falk, Physiol. Plant. (1958)",
         "Young's modulus E = 3.6 p + 2.5 MPa (as it is cited; the original was not seen). No scatter is told: 10 % is "
         f"allowed. {PLANE}",
         "Nothing. Cells keep their water during the test. Walls, their thickness and the size of cells vary over their "
         "intervals.",
-        "Both parts are right, with nothing fitted. The part without turgor is that of the end walls, which close the cells "
-        f"above and below; without them it would be {bare[0]:.2f} MPa, and the rise {bare[1]:.1f} MPa/MPa: walls that do not "
+        "Both parts are right, with nothing fitted. The part without turgor is that of the end walls, which close "
+        f"the cells above and below; without them it would be {100 * bare[0] / 2.5:.0f} % of what was measured, and "
+        f"the rise {bare[1]:.1f} MPa/MPa: walls that do not "
         "stretch resist by turgor alone, 6 p in plane strain, whatever they are made of.", rows,
         [Mode("stiffness with turgor", "rises", "rises" if slope[0] > 0 else "falls")])
 
@@ -55,19 +57,20 @@ def nilsson() -> Experiment:
 def niklas() -> Experiment:
     E = _moduli(_potato(), (0.01, 0.4))
     turgid = changed(_potato(), 0.4)
-    stiff = calibrate({"rve.wall.C1": ("20 MPa", "2000 MPa")}, [Figures(turgid, {"modulus (MPa)": (19 / UNIAXIAL, 1.9)})],
-                      starts=1)
+    wanted = Figures(turgid, {"modulus (MPa)": (19 / UNIAXIAL, 1.9)})
+    stiff = calibrate({"rve.wall.C1": ("20 MPa", "2000 MPa")}, [wanted], starts=1)
     limp = UNIAXIAL * 1e-6 * figures([changed(stiff.scene(turgid), 0.01)])[0]["modulus"]
     rows = [Row("Young's modulus at -1.4 MPa (limp)", "MPa", *about(1.2), *band(E[:, 0])),
             Row("Young's modulus at -0.4 MPa (turgor 0.4 MPa)", "MPa", *about(19), *band(E[:, 1]))]
     return Experiment(
-        "niklas", "Potato: stiffness against water potential", "Niklas, Amer. J. Bot. 75 (1988)",
-        "1.2 and 19 MPa at water potentials of -1.4 and -0.4 MPa, as the abstract has them; no scatter is told, 10 % is "
-        f"allowed. Turgor: osmotic pressure of 0.8 MPa less what the potential is below 0, at least none. {PLANE}",
+        "niklas", "Potato: stiffness against water potential", "Niklas, Amer. J. Bot. (1988)",
+        "1.2 and 19 MPa at water potentials of -1.4 and -0.4 MPa, as the abstract has them; no scatter is told, 10 % "
+        f"is allowed. Turgor: osmotic pressure of 0.8 MPa less what the potential is below 0, at least none. {PLANE}",
         "Nothing.",
-        "Limp tissue is right, turgid tissue is not: by Nilsson's line it would have 3.9 MPa, a fifth of Niklas's figure, and "
-        f"Lamella agrees with that. A fit of the walls to 19 MPa needs {stiff.values[0] / 20:.0f} times the modulus C1, and "
-        f"limp tissue would then have {limp:.0f} MPa. What would raise one and not the other, walls that stiffen as turgor "
+        "Limp tissue is right, turgid tissue is not: by Nilsson's line it would have 3.9 MPa, a fifth of Niklas's "
+        f"figure, and Lamella agrees with that. A fit of the walls to 19 MPa needs {stiff.values[0] / 20:.0f} times "
+        f"the modulus C1, and limp tissue would then have {limp:.0f} MPa. What would raise one and not the other, "
+        "walls that stiffen as turgor "
         "stretches them (law `fibre_exponential`), was not fitted: one figure does not tell its two parameters.", rows,
         [Mode("stiffness as water is lost", "falls", "falls" if E[0, 1] > E[0, 0] else "rises")])
 
@@ -87,40 +90,51 @@ def section() -> Experiment:
     areas, seen = (20.0, 250.0), (5.0, 19.0)  # mm^2, MPa
     small, large = (math.sqrt(area / math.pi) for area in areas)
     cells = 2 * 0.09  # mm, across
-    told = [t["modulus"] for t in figures([_section(small, cells), _section(large, cells), _section(small, 0.999 * small)])]
+    told = [t["modulus"] for t in figures([_section(small, cells), _section(large, cells),
+                                           _section(small, 0.999 * small)])]
     found, limp = told[0] / told[1], told[2] / told[1]
     return Experiment(
-        "section", "Potato: stiffness against the size of the section", "Niklas, Amer. J. Bot. 75 (1988)",
+        "section", "Potato: stiffness against the size of the section", "Niklas, Amer. J. Bot. (1988)",
         "5 and 19 MPa for sections of 0.2 and 2.5 cm², as the abstract has them: a ratio of 0.26. No scatter is told: "
         "10 % is allowed.",
         "Nothing. Cylinders of these sections whose outermost layer of cells, 0.18 mm, is cut open and without turgor.",
-        f"Turgor lost at the surface is not the reason: a small section that is limp throughout would still have {limp:.2f} of "
-        "the modulus. Cells that are cut have lost walls, too, and the test itself may depend on the size (Niklas let the "
-        "samples vibrate).",
+        "Turgor lost at the surface is not the reason: a small section that is limp throughout would still have "
+        f"{limp:.2f} of the modulus of the large one. Cells that are cut have lost walls, too, and the test itself "
+        "may depend on the size (Niklas let the samples vibrate).",
         [Row("modulus of the small section over that of the large one", "", *about(seen[0] / seen[1]), found)],
         [Mode("the smaller section", "softer", "softer" if found < 1 else "stiffer")])
 
 
+TISSUES = 4  #: for each share of air
+
+
 def ting() -> Experiment:
+    from scipy.stats import t
     told = []
     with tempfile.TemporaryDirectory() as folder:
         for gas in (0.170, 0.293, 0.298):
-            for seed in range(2):
+            for seed in range(TISSUES):
                 tissue = Path(folder) / f"{gas}-{seed}.json"
                 program.run("tissue", "-o", tissue, "--cells", 30, "--size", "180 um", "--variation", 0.3, "--gas", gas,
                             "--wall-thickness", "1.5 um", "--seed", seed)
                 of = _potato()
                 rve = of["rve"] | {"cell": {"length": of["rve"]["cell"]["length"]}, "tissue": str(tissue)}
                 told.append({"version": 1, "rve": rve, "load": of["load"]})
-        E = np.reshape([t["modulus"] for t in figures(json.loads(json.dumps(told)))], (3, 2)).mean(axis=1)
+        moduli = np.reshape([found["modulus"] for found in figures(json.loads(json.dumps(told)))], (3, TISSUES))
+    E = moduli.mean(axis=1)
+    ratio = np.log(moduli[1] / moduli[0])  # tissue by tissue, of the same seed
+    error = float(ratio.std(ddof=1) / math.sqrt(TISSUES) * t.ppf(0.975, TISSUES - 1))
+    interval = E[1] / E[0] * math.exp(-error), E[1] / E[0] * math.exp(error)
     return Experiment(
         "ting", "Apple: air alone does not tell firmness", "Ting et al. (2013)",
-        "Air spaces of 17.0, 29.3 and 29.8 %, firmness of 29.8, 28.4 and 14.2 N: cultivars with the same air differ by a "
-        "factor of two, so that at 29 % firmness is anything between 0.48 and 0.95 of that at 17 %. A control: a model that "
-        "told firmness by air alone would be wrong.",
-        "Nothing. Irregular tissue with these shares of air, all else alike; stiffness stands for firmness.",
-        f"Air alone makes the tissue {E[1] / E[0]:.2f} times as stiff, between the two cultivars: the factors that remain, "
-        f"{28.4 / 29.8 / (E[1] / E[0]):.2f} and {14.2 / 29.8 / (E[1] / E[0]):.2f}, are of walls, turgor and lamella.",
-        [Row("29.3 % air against 17.0 %", "", 14.2 / 29.8, 28.4 / 29.8, E[1] / E[0])],
+        "Air spaces of 17.0, 29.3 and 29.8 %, firmness of 29.8, 28.4 and 14.2 N: cultivars with the same air differ "
+        "by a factor of two, so that at 29 % firmness is anything between 0.48 and 0.95 of that at 17 %. A control: "
+        "a model that told firmness by air alone would be wrong.",
+        f"Nothing. Irregular tissue with these shares of air, {TISSUES} of each, all else alike; stiffness stands for "
+        "firmness.",
+        f"Air alone makes the tissue {E[1] / E[0]:.2f} times as stiff, between the two cultivars: the factors that "
+        f"remain, {28.4 / 29.8 / (E[1] / E[0]):.2f} and {14.2 / 29.8 / (E[1] / E[0]):.2f}, are of walls, turgor and "
+        "lamella.",
+        [Row("29.3 % air against 17.0 %", "", 14.2 / 29.8, 28.4 / 29.8, E[1] / E[0], interval)],
         [Mode("two cultivars with 29.3 and 29.8 % of air", "differ by more than air",
               "differ by more than air" if abs(E[2] / E[1] - 1) < 0.3 else "differ by air")])

@@ -17,7 +17,7 @@ def _range(low: float, high: float) -> str:
 
 def _row(row: Row) -> str:
     found = number(row.predicted) + (f" ({_range(*row.interval)})" if row.interval else "")
-    kind = "fitted" if row.fitted else "yes" if row.within else f"**no**, by a factor of {row.miss:.2g}"
+    kind = "fitted" if row.fitted else "yes" if row.within else f"**no**, by a factor of {number(row.miss)}"
     unit = f", {row.unit}" if row.unit else ""
     return f"| {row.what}{unit} | {_range(row.low, row.high)} | {found} | {kind} |"
 
@@ -45,7 +45,8 @@ def counts(told: Sequence[Experiment]) -> dict[str, int]:
 
 def summary(told: Sequence[Experiment]) -> str:
     of = counts(told)
-    return (f"{of['experiments']} experiments; of {of['predicted']} with predicted figures all agree in {of['within']}; "
+    return (f"{of['experiments']} experiments; of {of['predicted']} with predicted figures all agree in "
+            f"{of['within']}; "
             f"{of['right']} of {of['modes']} modes of failure and trends are right")
 
 
@@ -59,19 +60,21 @@ def page(told: Sequence[Experiment]) -> str:
     """Markdown."""
     lines = [
         "# Against measurements", "",
-        "What was published of fruit and vegetables, and what Lamella finds for it. `lamella validate` solves all of it "
-        "anew and writes this page. Figures are as abstracts and open pages give them; nothing was measured for this "
+        "What was published of fruit and vegetables, and what Lamella finds for it. `lamella validate` solves all of "
+        "it anew and writes this page. Figures are as abstracts and open pages give them; nothing was measured for "
+        "this "
         "program. Each experiment says what was chosen or fitted; all else was predicted.", "",
-        "An interval behind a prediction holds 95 % of 40 samples of what is not known of the tissue (walls, sizes of "
-        "cells: [tissues](tissues.md)); of a mean over tissues it is that of the mean. A figure *agrees* where that interval "
+        "An interval behind a prediction holds 95 % of 40 samples of what is not known of the tissue (walls, sizes "
+        "of cells: [tissues](tissues.md)); of a mean over tissues it is that of the mean. A figure *agrees* where "
+        "that interval "
         "and the measured one have values in common. Where a source tells no scatter, a tenth is allowed.", "",
         f"**{summary(told)}.**", "", "![Predicted over measured](../figures/validation.png)", "",
         "## What misses, and why", ""]
     missed = misses(told)
     if missed:
         lines += ["| figure | measured | Lamella | factor |", "|---|---|---|---|"]
-        lines += [f"| {e.title}: {row.what} | {_range(row.low, row.high)} | {number(row.predicted)} | {row.miss:.2g} |"
-                  for e, row in missed]
+        lines += [f"| {e.title}: {row.what} | {_range(row.low, row.high)} | {number(row.predicted)} | "
+                  f"{number(row.miss)} |" for e, row in missed]
         lines += ["", "The reasons are told with each experiment below.", ""]
     for e in told:
         lines += _section(e)
