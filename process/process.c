@@ -51,14 +51,17 @@ PetscReal LamMembraneArea(const LamMicrostructure *micro)
   PetscReal area = 0;
 
   for (PetscInt c = 0; c < cells; c++) {
-    const PetscReal inner = LamOuterApothem(micro) - LamWallThickness(micro, c);
+    const PetscReal t = LamWallThickness(micro, c), inner = LamOuterApothem(micro) - t;
 
-    if (tissue)
-      area += (LamTissueInnerPerimeter(tissue, c, LamWallThickness(micro, c)) +
-               ends * LamTissueCellArea(tissue, c) * PetscSqr(inner)) /
-              tissue->area;
-    else
+    if (tissue) {
+      const PetscReal perimeter = LamTissueInnerPerimeter(tissue, c, t);
+      const PetscReal lumen =
+          LamTissueCellArea(tissue, c) - 0.5 * t * (LamTissueInnerPerimeter(tissue, c, 0) + perimeter);
+
+      area += (perimeter + ends * lumen) / tissue->area;
+    } else {
       area += (2 * inner + ends * PetscSqr(inner)) / (PetscReal)cells;
+    }
   }
   return area;
 }

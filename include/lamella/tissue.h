@@ -42,7 +42,7 @@ LAM_EXPORT PetscBool LamTissuesAgree(LamTissue a, LamTissue b, PetscReal toleran
 
 /* Mean of the corners of a cell. */
 LAM_EXPORT void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centre[2]);
-/* Area of the polygon of a cell. */
+/* Area of a cell, without the air at its corners. */
 LAM_EXPORT PetscReal LamTissueCellArea(LamTissue tissue, PetscInt cell);
 /* Perimeter of the line at a distance inside a cell, with arcs where air rounds its corners. */
 LAM_EXPORT PetscReal LamTissueInnerPerimeter(LamTissue tissue, PetscInt cell, PetscReal distance);

@@ -70,9 +70,16 @@ class Problem:
         return self._last[1]
 
     def _compare(self, u: np.ndarray) -> np.ndarray:
-        parts = [(e.model(self.scene(e, u)) - e.y) / e.scatter for e in self.experiments]
+        parts = [(self._model(e, u) - e.y) / e.scatter for e in self.experiments]
         parts.append(np.array([p.misfit(p.value(x)) for p, x in zip(self.parameters, u) if p in self.priors]))
         return np.nan_to_num(np.concatenate(parts), nan=LOST)
+
+    def _model(self, of: Experiment, u: np.ndarray) -> np.ndarray:
+        """NaN where it does not reach, and where these parameters make no scene."""
+        try:
+            return of.model(self.scene(of, u))
+        except InputError:
+            return np.full(len(of.y), np.nan)
 
     def jacobian(self, u: np.ndarray, free: Sequence[int] | None = None) -> np.ndarray:
         here, columns = self.residuals(u), []
@@ -117,8 +124,8 @@ def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> list[list[tuple[fl
 class Fit:
     """What was found: `values` and 95 % `intervals` [n, 2] in the units of the bounds, `covariance` and `correlation`
     of the scaled parameters, `chi2` (the sum of squares) with `freedom`, `starts`: the sum of squares that each start
-    has ended with, `untold`: directions of the parameters that the data do not tell, as texts; `misfit`: a text where the
-    scenes do not repeat the data within their scatter; `profiles`, by `profile`:
+    has ended with, `untold`: directions of the parameters that the data do not tell, as texts; `misfit`: a text where
+    the scenes do not repeat the data within their scatter, or do not reach `lost` of them; `profiles`, by `profile`:
     of each parameter values and sums of squares, and `profiled`, the intervals that these give, NaN at an end where the
     data tell no bound."""
 
@@ -140,15 +147,20 @@ class Fit:
         finite = np.minimum(spread, 1e6)  # of directions that nothing tells
         self.covariance = direction.T @ np.diag(finite**2) @ direction
         deviation = np.sqrt(np.diag(self.covariance))
-        self.correlation = self.covariance / np.outer(deviation, deviation)
+        safe = np.where(deviation > 0, deviation, 1.0)  # 0: the data are repeated exactly
+        self.correlation = self.covariance / np.outer(safe, safe)
         self.values = np.array([p.value(x) for p, x in zip(self.parameters, u)])
         self.intervals = np.array([[p.value(np.clip(x + s * self.width * d, 0, 1)) for s in (-1, 1)]
                                    for p, x, d in zip(self.parameters, u, deviation)])
         self.untold = [self._words(v) for v, s in zip(direction, spread) if self.width * s > BLIND]
+        self.lost = int(np.sum(np.abs(problem.residuals(u)) >= LOST))  #: points that the best fit does not reach
         self.misfit = ""  #: what says that the scenes do not repeat the data within their scatter
         if self.known and chi2 > squares.ppf(UNLIKELY, max(self.freedom, 1)):
             self.misfit = ("the scenes do not repeat the data within their scatter, which would have given less than "
                            f"{squares.ppf(UNLIKELY, max(self.freedom, 1)):.3g}: the intervals mean nothing")
+        if self.lost:
+            self.misfit = (f"{self.lost} of {problem.points} points are not reached by the best fit: give the scenes' "
+                           "loads more states there, or other bounds")
         self.profiles: list[np.ndarray] = []
         self.profiled = np.full((len(u), 2), np.nan)
 
@@ -167,6 +179,9 @@ class Fit:
         limit = self.chi2 + self.width**2 * self.variance
         for k, points in enumerate(parallel.each(_profiles, jobs, processes)):
             u, cost = np.array(points).T
+            if cost.min() < self.chi2 - 1e-3 * self.variance:
+                self.untold.append(f"{self.parameters[k].key}: its profile has a smaller sum of squares, "
+                                   f"{cost.min():.4g}: the fit is not the best one; give more starts")
             self.profiles.append(np.array([[self.parameters[k].value(x) for x in u], cost]))
             best = int(np.argmin(cost))
             for side, order in enumerate((range(best, 0, -1), range(best, len(u) - 1))):
@@ -234,7 +249,8 @@ def calibrate(parameters: dict[str, Range] | list[Parameter], curves: Sequence[E
         raise InputError("calibrate: no parameter, no curve or no start")
     problem = Problem(chosen, curves)
     problem.check()
-    places = np.vstack([np.full((1, n), 0.5), qmc.Sobol(n, scramble=False).random(max(starts, 2))[1:starts]])
+    sobol = qmc.Sobol(n, scramble=False).random_base2(math.ceil(math.log2(max(starts, 2))))
+    places = np.vstack([np.full((1, n), 0.5), sobol[1:starts]])
     fits = parallel.each(_starts, [(problem, u) for u in places], processes)
     best, chi2 = min(fits, key=lambda f: f[1])
     return Fit(problem, best, chi2, [cost for _, cost in fits])

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import RVE, InputError, Responses, Scene, program, scene_dict
-from ._library import NAMES
+from ._library import MEMBERS
 from .parameters import Parameter
 from .program import SceneLike
 from .units import quantity
@@ -29,6 +29,9 @@ FIGURES = {"modulus": "MPa", "poisson": "", "bioyield.strain": "", "bioyield.str
 OF_FAILURE = "failure."
 OF_PEAK, OF_ALL = ("peak.strain", "peak.stress", "energy_to_peak"), ("work", "returned", "hysteresis")
 FACTORS = {"": 1.0, "MPa": 1e6, "kJ/m^3": 1e3}  #: SI values of the units of JSON
+TENSOR = 9  #: components
+#: units of members that scenes know: their dimension, and an example
+DIMENSIONS = {"Pa": ("stress", "MPa"), "m": ("length", "um"), "s": ("time", "s")}
 ENERGIES = {"J/m^3": 1.0, "kJ/m^3": 1e3, "MJ/m^3": 1e6}  #: no dimension of scenes
 
 
@@ -58,7 +61,7 @@ class Curve:
         self.known = scatter is not None or own is not None
         self.scatter: np.ndarray = np.full(len(self.y), float(np.abs(self.y).max()))
         if isinstance(scatter, str):
-            self.scatter[:] = quantity(scatter)
+            self.scatter[:] = quantity(scatter, self.columns[1].dimension)
         elif scatter is not None:
             self.scatter *= scatter
         elif own is not None:
@@ -67,9 +70,14 @@ class Curve:
             raise InputError(f"{self.name}: a scatter of {self.scatter.min():g} is none")
 
     def states(self, scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-        """x and y of the states of a scene that have converged."""
+        """x and y of the states of a scene, up to the first that has not converged. InputError: x goes back."""
         r = RVE(Scene(self.path, json.dumps(scene))).solve(derivatives=False)
-        x, y = (c.of(r, scene)[r.converged] for c in self.columns)
+        end = len(r) if r.converged.all() else int(np.argmin(r.converged))
+        x, y = (c.of(r, scene)[:end] for c in self.columns)
+        steps = np.diff(x)
+        if (steps > 0).any() and (steps < 0).any():
+            raise InputError(f"{self.name}: along the scene's load {self.columns[0].title} goes back: give loading and "
+                             "unloading as experiments of their own, each with its scene and its data")
         return x, y
 
     def model(self, scene: dict[str, Any]) -> np.ndarray:
@@ -144,7 +152,8 @@ class Figures:
         """InputError unless a scene has the figures."""
         for title, value in zip(self.titles, self.model(scene)):
             if math.isnan(value):
-                raise InputError(f"{self.name}: {title}: with parameters in the middle of their bounds the scene has none")
+                raise InputError(f"{self.name}: {title}: with parameters in the middle of their bounds the scene has "
+                                 "none")
 
     def settle(self, middle: dict[str, Any]) -> None:
         """As of Curve."""
@@ -163,16 +172,16 @@ Experiment = Curve | Figures
 def experiment(scene: SceneLike, path: str, parameters: list[Parameter]) -> Experiment:
     """Of a scene and a file of data, whatever that holds."""
     keys = {p.key for p in parameters}
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
         first = next((line for line in file if line.strip()), "")
     return Figures(scene, path, keys) if first.split(",")[0].strip() == "figure" else Curve(scene, path, keys=keys)
 
 
 def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) -> dict[str, Any]:
     """The FIGURES of a scene's test that it has, SI; with failure also `mode` and `criterion`, texts. Where a state has
-    no answer there is no work of all states, and no peak unless the curve falls behind it. Bodies, processes and failure
-    are solved by the program, in a process of their own. With `of_forces` a body is no box: figures are 1e6 or 1e3 times
-    what JSON has in N and mm."""
+    no answer there is no work of all states, and no peak unless the curve falls behind it. Bodies, processes and
+    failure are solved by the program, in a process of their own. With `of_forces` a body is no box: figures are 1e6 or
+    1e3 times what JSON has in N and mm."""
     text = Scene(path, json.dumps(scene))
     if "load" in scene and not failure:
         rve = RVE(text)
@@ -212,8 +221,8 @@ def figures_in(objects: list[dict[str, Any]], failure: bool = False, complete: b
 def _at_failure(objects: list[dict[str, Any]], found: dict[str, Any]) -> dict[str, float]:
     """Strain and stress (MPa) of the test's curve where the tissue fails first; the stress between two states by a
     straight line."""
-    if "component" not in found or OF_FAILURE + "F" not in found:
-        return {}
+    if "component" not in found or OF_FAILURE + "F" not in found or OF_FAILURE + "criterion" not in found:
+        return {}  # F is of the last state where nothing fails
     row, column = (int(i) - 1 for i in found["component"])
     start = np.reshape(found.get("F_inflated", np.eye(3)), (3, 3))
     strain = lambda F: (np.reshape(F, (3, 3)) @ np.linalg.inv(start))[row, column] - (row == column)
@@ -263,10 +272,23 @@ class _Column:
             raise InputError(f"{source}: a column {title!r}; wanted is a member of a response, as P11 (MPa)")
         self.title, self.member = title.strip(), match[1]
         self.index = tuple(int(i) - 1 for i in match.group(2, 3)) if match[2] else ()
-        if self.member not in NAMES:
-            raise InputError(f"{source}: a column {self.title}: a response has no {self.member}; its members: "
-                             f"{', '.join(NAMES)}")
-        self.one = quantity(f"1 {match[4]}") if match[4] else 1.0
+        of = {name: (count, unit) for name, type_, count, _, unit, _ in MEMBERS
+              if type_ == "f" and count in (1, TENSOR)}
+        if self.member == "scatter":
+            raise InputError(f"{source}: a column {self.title}: write scatter, without a unit: it has that of the "
+                             "second column")
+        if self.member not in of:
+            raise InputError(f"{source}: a column {self.title}: a response has no number {self.member}; it has "
+                             f"{', '.join(of)}")
+        count, unit = of[self.member]
+        if (count == TENSOR) != bool(self.index):
+            raise InputError(f"{source}: a column {self.title}: {self.member} " +
+                             ("is a tensor: write a component, as P11" if count == TENSOR else "has no components"))
+        if unit in DIMENSIONS and not match[4]:
+            raise InputError(f"{source}: a column {self.title}: the unit is missing, as {self.title} "
+                             f"({DIMENSIONS[unit][1]})")
+        self.dimension = DIMENSIONS[unit][0] if unit in DIMENSIONS else None
+        self.one = quantity(f"1 {match[4]}", self.dimension) if match[4] else 1.0
 
     def si(self, values: ArrayLike) -> np.ndarray:
         return self.one * np.asarray(values, float)
@@ -295,7 +317,7 @@ def _figure(source: str, title: str) -> tuple[str, float]:
 
 def _rows(path: str) -> list[tuple[int, list[str]]]:
     """Lines of a CSV file that are not empty, with their numbers."""
-    with open(path, newline="", encoding="utf-8") as file:
+    with open(path, newline="", encoding="utf-8-sig", errors="replace") as file:
         return [(number, [cell.strip() for cell in row]) for number, row in enumerate(csv.reader(file), 1)
                 if any(cell.strip() for cell in row)]
 
@@ -323,8 +345,8 @@ def _read(path: str) -> dict[str, ArrayLike]:
 
 def _read_figures(path: str) -> dict[str, tuple[float, float]]:
     rows = _rows(path)
-    if rows[0][1] != ["figure", "value", "scatter"] or len(rows) < 2:
-        raise InputError(f"{path}:{rows[0][0]}: wanted is a line of titles, figure, value, scatter, and lines such as "
+    if len(rows) < 2 or rows[0][1] != ["figure", "value", "scatter"]:
+        raise InputError(f"{path}: wanted is a line of titles, figure, value, scatter, and lines such as "
                          "modulus (MPa), 3.6, 0.4")
     told: dict[str, tuple[float, float]] = {}
     for number, row in rows[1:]:

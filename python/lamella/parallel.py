@@ -10,27 +10,31 @@ from typing import Any
 
 from . import program
 from ._library import Error, InputError
+from ._served import end_with_program
 from .program import environment
 
 MISTAKE = 2  # exit status of a worker whose input is wrong
 
 
-def _there(function: Callable[[list[Any]], list[Any]], jobs: list[Any]) -> list[Any]:
-    """function(jobs) in another process."""
+def _there(function: Callable[[list[Any]], Any], jobs: list[Any], running: list["subprocess.Popen[bytes]"]) -> Any:
+    """function(jobs) in another process, which is added to those that run."""
     package = str(Path(__file__).resolve().parents[1])
     paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
-    done = subprocess.run([sys.executable, "-c", "from lamella import parallel; parallel.work()"],
-                          input=pickle.dumps((function, jobs)), capture_output=True, check=False,
-                          env=environment(PYTHONPATH=os.pathsep.join(paths)))
-    if done.returncode == MISTAKE:
-        raise InputError(done.stderr.decode().strip())
-    if done.returncode:
-        raise RuntimeError(f"a worker has ended with status {done.returncode}: {done.stderr.decode().strip()}")
-    return pickle.loads(done.stdout)
+    words = [sys.executable, "-c", "from lamella import parallel; parallel.work()"]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          env=environment(PYTHONPATH=os.pathsep.join(paths))) as worker:
+        running.append(worker)
+        out, err = worker.communicate(pickle.dumps((function, jobs)))
+    if worker.returncode == MISTAKE:
+        raise InputError(err.decode().strip())
+    if worker.returncode:
+        raise Error(f"a worker has ended with status {worker.returncode}: {err.decode().strip()}")
+    return pickle.loads(out)
 
 
 def work() -> None:
     """A worker: a function of this package and its jobs on stdin, their results on stdout, all pickled."""
+    end_with_program()
     out, sys.stdout = sys.stdout.buffer, sys.stderr
     try:
         function, jobs = pickle.load(sys.stdin.buffer)
@@ -43,12 +47,19 @@ def work() -> None:
 
 def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: int | None = None) -> list[Any]:
     """Results of jobs, in their order. function: of this package, takes a list of jobs and returns theirs; processes:
-    at a time, default the number of processors; 1: in this process."""
+    at a time, default the number of processors; 1: in this process. Where the whole is interrupted, so are they."""
     if processes == 1 or not jobs:
         return list(function(list(jobs)))
     n = min(processes or len(os.sched_getaffinity(0)), len(jobs))
+    running: list["subprocess.Popen[bytes]"] = []
     with ThreadPoolExecutor(n) as pool:
-        parts = list(pool.map(lambda k: _there(function, list(jobs[k::n])), range(n)))
+        futures = [pool.submit(_there, function, list(jobs[k::n]), running) for k in range(n)]
+        try:
+            parts = [future.result() for future in futures]
+        except BaseException:
+            for worker in running:
+                worker.kill()
+            raise
     return [parts[k % n][k // n] for k in range(len(jobs))]
 
 

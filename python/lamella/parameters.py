@@ -2,6 +2,7 @@
 import copy
 import math
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,6 +12,7 @@ from .program import SceneLike
 from .sweeps import get_key, set_key
 from .units import quantity, to
 
+QUANTITY = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(.*?)\s*$")
 Range = tuple[str | float, str | float]
 
 
@@ -24,18 +26,28 @@ class Parameter:
     unit: str = field(init=False, default="")
 
     def __post_init__(self) -> None:
-        (self._low, self.unit), (self._high, other) = _split(self.low), _split(self.high)
-        if other != self.unit:
-            raise InputError(f"{self.key}: {self.low} and {self.high} have different units: give both in one")
+        self._low, self.unit = _split(self.key, self.low)
+        self._high = self._number(self.high)
         if not self._low < self._high:
             raise InputError(f"{self.key}: {self.low} is not below {self.high}")
-        self.logarithmic = self._low > 0
+        # degC has its zero anywhere: ratios mean nothing
+        self.logarithmic = self._low > 0 and (not self.unit or quantity(f"0 {self.unit}") == 0)
         if self.prior is not None:
-            (mean, unit), (deviation, spread) = _split(self.prior[0]), _split(self.prior[1])
-            if unit != self.unit or spread != self.unit or deviation <= 0:
-                raise InputError(f"{self.key}: the prior {self.prior} is no mean and deviation in "
-                                 f"{self.unit or 'numbers'}")
+            mean, deviation = self._number(self.prior[0]), self._number(self.prior[1], is_difference=True)
+            if deviation <= 0 or not self._low <= mean <= self._high:
+                raise InputError(f"{self.key}: the prior {self.prior} is no mean between the bounds and deviation")
             self._prior = mean, deviation
+
+    def _number(self, value: str | float, is_difference: bool = False) -> float:
+        """In the unit of the lower bound."""
+        number, unit = _split(self.key, value)
+        if unit == self.unit:
+            return number
+        if not unit or not self.unit:
+            raise InputError(f"{self.key}: {self.low} and {value}: one has a unit, the other none")
+        origin = quantity(f"0 {self.unit}")
+        zero = quantity(f"0 {unit}") if is_difference else origin
+        return (quantity(f"{number!r} {unit}") - zero) / (quantity(f"1 {self.unit}") - origin)
 
     def value(self, u: float) -> float:
         """At u of the way between the bounds."""
@@ -67,13 +79,12 @@ class Parameter:
         return float(truncnorm.ppf(q, *ends, mean, deviation))
 
 
-def _split(value: str | float) -> tuple[float, str]:
+def _split(key: str, value: str | float) -> tuple[float, str]:
     """Number and unit."""
-    number, _, unit = str(value).strip().partition(" ")
-    try:
-        return float(number), unit.strip()
-    except ValueError:
-        raise InputError(f"{value}: is no number with a unit, such as 0.1 MPa") from None
+    match = QUANTITY.match(str(value))
+    if not match:
+        raise InputError(f"{key}: {value}: is no number with a unit, such as 0.1 MPa")
+    return float(match[1]), match[2]
 
 
 def varied(scene: dict[str, Any], parameters: Sequence[Parameter], values: Sequence[float]) -> dict[str, Any]:

@@ -102,7 +102,8 @@ def path_of(scene: SceneLike) -> Iterator[str]:
         yield scene.path if isinstance(scene, Scene) else os.fspath(scene)
         return
     folder = os.path.dirname(scene.path) or "."
-    with tempfile.NamedTemporaryFile("w", suffix=".yaml", dir=folder, encoding="utf-8") as file:
+    with tempfile.NamedTemporaryFile("w", prefix=".lamella-", suffix=".yaml", encoding="utf-8",
+                                     dir=folder if os.access(folder, os.W_OK) else None) as file:
         file.write(scene.text)
         file.flush()
         yield file.name

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, Scene, parallel, scene_dict
-from ._served import served
+from ._served import end_with_program, progress as shown, served
 from .measured import FACTORS, FIGURES, OF_FAILURE, read_off, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
 from .program import SceneLike
@@ -369,17 +369,13 @@ def study(scene: SceneLike, evaluations: int = 1000, figures: Sequence[str] | No
     return told
 
 
-def _progress(done: int, total: int) -> None:
-    print(f"\r\033[K{done} of {total} evaluations" if done < total else "\r\033[K", end="", file=sys.stderr, flush=True)
-
-
 def run(request: dict[str, Any]) -> None:
     """What `lamella sensitivity` does."""
     folder, figures = request.get("output"), request.get("figure")
     if folder:
         _make(folder)
     told = study(request["scene"], request.get("evaluations", 1000), figures.split(",") if figures else None,
-                 request.get("seed", 0), request.get("processes"), _progress if sys.stderr.isatty() else None)
+                 request.get("seed", 0), request.get("processes"), shown("evaluations"))
     print(json.dumps(told.told()) if request.get("json") else told)
     if not folder:
         return
@@ -390,6 +386,7 @@ def run(request: dict[str, Any]) -> None:
 
 def main(argument: str) -> int:
     """Exit status of a request."""
+    end_with_program()
     return served("lamella sensitivity", lambda: run(json.loads(argument)))
 
 

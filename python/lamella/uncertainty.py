@@ -45,8 +45,10 @@ class _Told:
         rows = [row for row in run.objects if "state" in row or "step" in row]
         events = [row for row in rows if row.get("event")]
         self.at = np.array([row["time" if command == "process" else "state"] for row in rows], float)
-        self.values = {name: np.array([_value(row, name) for row in rows]) for name in QUANTITIES}
-        found = figures_in(run.objects, failure)
+        end = next((k for k, row in enumerate(rows) if row.get("status", "converged") != "converged"), len(rows))
+        self.values = {name: np.array([_value(row, name) for row in rows[:end]] + [np.nan] * (len(rows) - end))
+                       for name in QUANTITIES}
+        found = figures_in(run.objects, failure, run.complete)
         self.figures = {name: found[name] / FACTORS[FIGURES[name]] for name in FIGURES if name in found}
         self.component = next((row["test"].get("component") for row in run.objects if row.get("test")), None)
         self.first: str | None = None

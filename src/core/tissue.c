@@ -158,6 +158,19 @@ void LamTissueCentre(LamTissue tissue, PetscInt cell, PetscReal centre[2])
     for (PetscInt d = 0; d < 2; d++) centre[d] += tissue->corner[k][d] / (PetscReal)count;
 }
 
+/* Area between a corner of a cell and the arc that rounds it, which touches both faces at the setback s: with the inner
+   angle b it has the radius s tan(b/2). */
+static PetscReal RoundedCorner(LamTissue tissue, PetscInt k)
+{
+  const PetscReal *x = tissue->corner[LamTissuePrevious(tissue, k)], *y = tissue->corner[k];
+  const PetscReal *z = tissue->corner[LamTissueNext(tissue, k)];
+  const PetscReal u[2] = {x[0] - y[0], x[1] - y[1]}, v[2] = {z[0] - y[0], z[1] - y[1]};
+  const PetscReal angle = PetscAbsReal(PetscAtan2Real(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]));
+  const PetscReal radius = tissue->setback[k] * PetscTanReal(0.5 * angle);
+
+  return tissue->setback[k] * radius - 0.5 * (PETSC_PI - angle) * radius * radius;
+}
+
 PetscReal LamTissueCellArea(LamTissue tissue, PetscInt cell)
 {
   PetscReal sum = 0.0;
@@ -165,7 +178,7 @@ PetscReal LamTissueCellArea(LamTissue tissue, PetscInt cell)
   for (PetscInt k = tissue->first[cell]; k < tissue->first[cell + 1]; k++) {
     const PetscReal *x = tissue->corner[k], *y = tissue->corner[LamTissueNext(tissue, k)];
 
-    sum += 0.5 * (x[0] * y[1] - x[1] * y[0]);
+    sum += 0.5 * (x[0] * y[1] - x[1] * y[0]) - (tissue->setback[k] > 0.0 ? RoundedCorner(tissue, k) : 0.0);
   }
   return sum;
 }

@@ -2,14 +2,15 @@
   The `uncertain` block of a scene: keys whose values are not known, and between which values they lie. Studies of
   scenes read it from the text (python/lamella/parameters.py); here it is checked.
 */
+#include "quantity_text.h"
 #include "scene_rows.h"
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const LamKey uncertain_keys[] = {
     {LIST("uncertain"), .default_words = "all values are known",
+     .example = "[{key: rve.wall.C1, from: 10 MPa, to: 40 MPa}]",
      .help = "For `calibrate`, `sensitivity` and `--uncertainty`: values that are not known. Within its bounds each is "
              "as likely as any other, in the logarithm where they are above 0."},
     {MAP("uncertain[]"), .example = "{key: rve.wall.C1, from: 10 MPa, to: 40 MPa}",
@@ -26,13 +27,16 @@ static const LamKey uncertain_keys[] = {
 };
 LAM_KEY_TABLE(LamUncertainKeys, uncertain_keys);
 
+enum { MOST_DIGITS = 6 }; /* of the number of an item */
+
 /* The node of an entry or item; NULL: there is none. */
 static const LamNode *Step(const LamNode *node, const char part[], size_t length)
 {
   PetscInt index;
 
   if (node->kind == LAM_NODE_MAP) return LamNodeEntry(node, part, length);
-  if (node->kind != LAM_NODE_LIST || !isdigit((unsigned char)part[0])) return NULL;
+  if (node->kind != LAM_NODE_LIST || length > MOST_DIGITS || strspn(part, "0123456789") != length) return NULL;
+  if (length > 1 && part[0] == '0') return NULL; /* one spelling of each number */
   index = (PetscInt)strtol(part, NULL, 10);
   for (node = node->first; node && index--; node = node->next)
     ;
@@ -88,6 +92,7 @@ static PetscErrorCode CheckEntry(const LamNode *root, const LamNode *entry)
 {
   LamNode *from, *to, *mean, *deviation;
   PetscReal least, most, middle, spread;
+  const char *end;
   const LamKey *key = NULL;
   LamKey unbounded;
 
@@ -102,7 +107,8 @@ static PetscErrorCode CheckEntry(const LamNode *root, const LamNode *entry)
   LamSceneCheck(least < most, to, "is not larger than from (%s in line %d); exchange them", from->text, from->line);
   LamSceneCheckName(!mean == !deviation, mean ? mean : deviation, "goes with %s; write it, or leave this out",
                     mean ? "deviation" : "mean");
-  LamSceneCheck(!deviation || spread > 0, deviation, "is no standard deviation; write one above 0");
+  LamSceneCheck(!deviation || LamNumberScan(deviation->text, &end) > 0, deviation,
+                "is no standard deviation; write one above 0");
   LamSceneCheck(!mean || (middle >= least && middle <= most), mean, "is not between from and to");
   for (const LamNode *other = entry->parent->first; other != entry; other = other->next)
     LamSceneCheck(strcmp(LamNodeFind(other, "key")->text, LamNodeFind(entry, "key")->text) != 0,

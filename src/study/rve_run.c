@@ -169,8 +169,9 @@ const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number)
   return run->scene->controls ? &run->scene->controls[number - 1] : NULL;
 }
 
-/* After the first state of a load from the inflated tissue: what follows counts from there. Cells that are sealed in it
-   are stiffer than the open ones that it was found with: it is solved again, where it is. */
+/* After the first state of a load from the inflated tissue: what follows counts from there. Cells that are sealed in
+   it, and walls that have relaxed in it, are stiffer at once than when it was found: it is solved again, where it is.
+ */
 static PetscErrorCode StartFromInflated(LamRVERun *run, LamResponse inflated[2])
 {
   LamLoad load = inflated->load;
@@ -183,7 +184,7 @@ static PetscErrorCode StartFromInflated(LamRVERun *run, LamResponse inflated[2])
     PetscFunctionReturn(0);
   }
   LamLoadsFromInflated(run->scene, load.F);
-  if (!run->scene->sealed) PetscFunctionReturn(0);
+  if (!run->scene->sealed && !LamWallsRelax(&run->scene->micro)) PetscFunctionReturn(0);
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &load));
   load.duration = 0;
   PetscCall(LamMeshesSolve(&run->meshes, &load, NULL, inflated));

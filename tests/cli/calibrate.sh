@@ -66,6 +66,18 @@ sed 's/^1.20/1.30/' tension.csv >far.csv
 refused "F11 from 1 to 1.3; with parameters in the middle of their bounds the scene's states reach from 1 to 1.2" tension.yaml far.csv
 sed 's/41, 0.001/41, 0/' figures.csv >certain.csv
 refused "a scatter of 0 is none" shear.yaml certain.csv
+printf '\xef\xbb\xbf' | cat - tension.csv >bom.csv
+expect 0 "$lamella" calibrate tension.yaml bom.csv --starts 1
+for title in "P11 (um):um" "P (kPa):P is a tensor: write a component, as P11" "status:a response has no number status" \
+  "P11:the unit is missing, as P11 (MPa)"; do
+  sed "s/P11 (kPa)/${title%%:*}/" tension.csv >title.csv
+  refused "${title#*:}" tension.yaml title.csv
+done
+sed 's/steps: 8}}/steps: 8}}, {F: [[1.1, 0], [0, 1]]}/' tension.yaml >back.yaml
+refused "along the scene's load F11 goes back: give loading and unloading as experiments of their own" back.yaml tension.csv
+sed 's/, stress.*//; s/^peak.stress.*/failure.strain, 0.1, 0.01/' figures.csv >fails.csv
+sed '/^uncertain/i strength: {wall: 50 MPa, lamella_normal: 50 MPa}' shear.yaml >strong.yaml
+refused "failure.strain: with parameters in the middle of their bounds the scene has none" strong.yaml fails.csv
 expect 1 "$lamella" calibrate tension.yaml tension.csv shear.yaml
 has err.txt "shear.yaml has no data"
 expect 4 "$lamella" calibrate tension.yaml nothing.csv

@@ -55,13 +55,20 @@ known = [Parameter(key, *ends, prior=("11.25 um", "0.1 um") if "um" in ends[0] e
 told = calibrate(known, [curve], starts=1)
 assert abs(told.values[1] - 11.25) < 0.3 and np.ptp(told.intervals[0]) < np.ptp(fit.intervals[0]), told
 
+# bounds and priors may have other units; ratios of temperatures in degC mean nothing; a prior lies between the bounds
+mixed = Parameter("k", "100 kPa", "0.5 MPa", prior=("0.2 MPa", "20 kPa"))
+assert mixed.logarithmic and np.allclose([mixed.value(0), mixed.value(1), mixed.misfit(220)], [100, 500, 1]), mixed
+warm = Parameter("t", "2 degC", "20 degC", prior=("280 K", "3 K"))
+assert not warm.logarithmic and np.isclose(warm.value(0.5), 11) and np.isclose(warm.misfit(9.85), 1), warm
+raises(lamella.InputError, "is no mean between the bounds", lambda: Parameter("k", 1, 2, prior=(3, 1)))
+
 # a model that does not reach is far off; mistakes
 far = Curve("tension.yaml", {"F11": [1.0, 1.5], "P11 (kPa)": [0, 1]}, 0.02)
 assert np.isnan(far.model(far.scene)).all()  # the scene has no undeformed state
 few = Curve("tension.yaml", {"F11": [1.1, 1.2], "P11 (kPa)": [1, 2]})
 for wrong, of, why in (({"rve.C5.x": (1, 2)}, curve, "no block C5"), ({"rve.wall.C5": (1, 2)}, curve, "unknown key"),
                        ({"rve.wall.C1": ("1 MPa", "0.5 MPa")}, curve, "is not below"),
-                       ({"rve.wall.C1": ("1 kPa", "0.5 MPa")}, curve, "different units"),
+                       ({"rve.wall.C1": (1, "0.5 MPa")}, curve, "one has a unit, the other none"),
                        ({"rve.wall.C1": ("soft", "0.5 MPa")}, curve, "is no number with a unit"),
                        (bounds, few, "give the scatter"),
                        (bounds, far, "F11 from 1 to 1.5; with parameters in the middle of their bounds the scene's states reach from 1.02 to 1.2")):

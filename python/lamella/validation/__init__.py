@@ -13,9 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from .. import parallel, program, scene_dict
+from .. import Error, parallel, program, scene_dict
 from ..measured import read_off, with_mesh
 from ..parameters import uncertain, varied
+from ..uncertainty import band as interval_of
+from ..uncertainty import sample
 
 SCENES = Path(__file__).parent / "scenes"
 SOURCE = Path(__file__).resolve().parents[3] / "tests" / "scenes" / "tissues"
@@ -38,19 +40,29 @@ class Row:
     fitted: bool = False
 
     @property
+    def inside(self) -> bool:
+        """Whether the predicted value itself was measured."""
+        return bool(self.low <= self.predicted <= self.high)
+
+    def ends(self) -> tuple[float, float]:
+        """Of what is predicted, its interval included."""
+        known = [v for v in (self.predicted, *(self.interval or ())) if math.isfinite(v)]
+        return (min(known), max(known)) if math.isfinite(self.predicted) else (math.nan, math.nan)
+
+    @property
     def within(self) -> bool:
         """Whether prediction and measurement, each with its interval, have values in common."""
-        low, high = self.interval or (self.predicted, self.predicted)
-        return bool(min(low, self.predicted) <= self.high and max(high, self.predicted) >= self.low)
+        low, high = self.ends()
+        return bool(low <= self.high and high >= self.low)
 
     @property
     def miss(self) -> float:
-        """Factor between the nearest ends of what was measured and predicted, at least 1."""
+        """Factor between the nearest ends of what was measured and predicted, at least 1; inf: there is no answer."""
         if self.within:
             return 1.0
-        low, high = self.interval or (self.predicted, self.predicted)
+        low, high = self.ends()
         below, above = (high, self.low) if high < self.low else (self.high, low)
-        return float(above / below) if below > 0 else math.inf
+        return float(above / below) if below > 0 and math.isfinite(above) else math.inf
 
 
 @dataclass
@@ -143,13 +155,11 @@ def _follow(jobs: list[Scene]) -> list[dict[str, float]]:
     return told
 
 
-def samples(of: Scene, count: int = SAMPLES) -> list[Scene]:
+def samples(of: Scene) -> list[Scene]:
     """The scene itself, and samples of what is uncertain of it; all have its mesh."""
-    from scipy.stats import qmc
     parameters = uncertain(of)
     bare = with_mesh({name: block for name, block in of.items() if name != "uncertain"})
-    places = qmc.LatinHypercube(len(parameters), seed=0).random(count)
-    return [bare] + [varied(bare, parameters, [p.quantile(q) for p, q in zip(parameters, place)]) for place in places]
+    return [bare] + [varied(bare, parameters, values.tolist()) for values in sample(parameters, SAMPLES)]
 
 
 def _read(jobs: list[tuple[Scene, bool]]) -> list[dict[str, Any]]:
@@ -162,10 +172,11 @@ def figures(scenes: Sequence[Scene], failure: bool = False) -> list[dict[str, An
 
 
 def band(values: Sequence[float] | np.ndarray) -> tuple[float, tuple[float, float]]:
-    """The scene's own value, and the interval of the samples behind it."""
-    rest = np.array([v for v in values[1:] if math.isfinite(v)])
-    low, high = np.quantile(rest, [0.025, 0.975]) if len(rest) else (math.nan, math.nan)
-    return float(values[0]), (float(low), float(high))
+    """The scene's own value, and the interval of the samples behind it. Error: a tenth of them have none."""
+    told = interval_of(np.array(values[1:], float))
+    if told["count"] < 0.9 * (len(values) - 1):
+        raise Error(f"{len(values) - 1 - told['count']} of {len(values) - 1} samples have no answer")
+    return float(values[0]), (told["low"], told["high"])
 
 
 def experiments() -> dict[str, Callable[[], Experiment]]:

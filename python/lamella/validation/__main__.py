@@ -18,14 +18,15 @@ def _told(e: Experiment) -> dict[str, Any]:
     """As an object of JSON."""
     return {"name": e.name, "title": e.title, "source": e.source, "verdict": e.verdict,
             "miss": e.miss if math.isfinite(e.miss) else None,
-            "rows": [dataclasses.asdict(row) | {"within": row.within} for row in e.rows],
+            "rows": [dataclasses.asdict(row) | {"inside": row.inside, "within": row.within} for row in e.rows],
             "modes": [dataclasses.asdict(mode) | {"right": mode.right} for mode in e.modes]}
 
 
 def _print(e: Experiment, seconds: float) -> None:
     print(f"{e.name}: {e.title} ({seconds:.0f} s)")
     for row in e.rows:
-        word = "fitted" if row.fitted else "agrees" if row.within else f"misses by a factor of {number(row.miss)}"
+        word = ("fitted" if row.fitted else "agrees" if row.inside else "agrees by its interval" if row.within
+                else f"misses by a factor of {number(row.miss)}")
         print(f"  {row.what}: {number(row.predicted)} {row.unit}".rstrip() +
               f", measured {number(row.low)} to {number(row.high)}: {word}")
     for mode in e.modes:

@@ -37,14 +37,13 @@ def alvarez() -> Experiment:
         "largest values. Allowed of the falls: a quarter.",
         f"Nothing. Stored: the apple of [the six tissues](tissues.md) after {days} days at 2 °C. What a crack spends "
         "is proportional to what the lamella spends, and K is the root of modulus times energy.",
-        "The modulus and the loss of energy are right, the latter with a wide interval: rates in storage are "
+        "The modulus and the loss of energy agree, the latter with a wide interval: rates in storage are "
         "estimates. Toughness falls more than Lamella says, which leaves the tissue nearly as stiff as it was: "
         "stored apples soften more than by the walls and the turgor of that scene.",
         [Row("K²/R, the modulus", "MPa", 2.5, 6.25, *band(fresh)),
          Row("energy of fracture after four weeks, over fresh", "", 0.7 - 0.075, 0.7 + 0.075, *band(lamella)),
          Row("toughness after four weeks, over fresh", "", 0.5 - 0.125, 0.5 + 0.125,
-             *band(np.sqrt(stored / fresh * lamella)))],
-        [Mode("toughness in storage", "falls", "falls" if stored[0] * lamella[0] < fresh[0] else "rises")])
+             *band(np.sqrt(stored / fresh * lamella)))])
 
 
 STRAIN, LENGTH = 0.05, 20.0  #: of the loops, chosen; mm, of the sample, chosen
@@ -84,8 +83,7 @@ def schoorl_holt() -> Experiment:
         "Work and hysteresis fit together. With cells that keep all their water a loop would lose 15 % at most "
         "(measured once), as turgor, which is elastic, bears most of a small strain: water has to find a way, or "
         "walls beside those of "
-        "the section.", rows,
-        [Mode("hysteresis with speed", "rises", "rises" if fitted[1] > fitted[0] else "falls")])
+        "the section.", rows)
 
 
 def _tissue(folder: str, seed: int, direction: int, thickness: str) -> Path:

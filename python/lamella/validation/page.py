@@ -15,11 +15,15 @@ def _range(low: float, high: float) -> str:
     return f"{number(low)} to {number(high)}"
 
 
+def _found(row: Row) -> str:
+    return number(row.predicted) + (f" ({_range(*row.interval)})" if row.interval else "")
+
+
 def _row(row: Row) -> str:
-    found = number(row.predicted) + (f" ({_range(*row.interval)})" if row.interval else "")
-    kind = "fitted" if row.fitted else "yes" if row.within else f"**no**, by a factor of {number(row.miss)}"
+    kind = ("fitted" if row.fitted else "yes" if row.inside else "by its interval" if row.within
+            else f"**no**, by a factor of {number(row.miss)}")
     unit = f", {row.unit}" if row.unit else ""
-    return f"| {row.what}{unit} | {_range(row.low, row.high)} | {found} | {kind} |"
+    return f"| {row.what}{unit} | {_range(row.low, row.high)} | {_found(row)} | {kind} |"
 
 
 def _mode(mode: Mode) -> str:
@@ -39,15 +43,20 @@ def counts(told: Sequence[Experiment]) -> dict[str, int]:
     """How many experiments there are, have predicted figures, all within their scatter; and modes, and right ones."""
     modes = [mode for e in told for mode in e.modes]
     return {"experiments": len(told), "predicted": sum(e.verdict != "none" for e in told),
-            "within": sum(e.verdict == "within" for e in told), "modes": len(modes),
+            "within": sum(e.verdict == "within" for e in told),
+            "figures": sum(not row.fitted for e in told for row in e.rows),
+            "inside": sum(row.inside and not row.fitted for e in told for row in e.rows),
+            "by_interval": sum(row.within and not row.inside and not row.fitted for e in told for row in e.rows),
+            "modes": len(modes),
             "right": sum(mode.right for mode in modes)}
 
 
 def summary(told: Sequence[Experiment]) -> str:
     of = counts(told)
-    return (f"{of['experiments']} experiments; of {of['predicted']} with predicted figures all agree in "
-            f"{of['within']}; "
-            f"{of['right']} of {of['modes']} modes of failure and trends are right")
+    return (f"{of['experiments']} experiments. Of {of['figures']} predicted figures {of['inside']} are as measured, "
+            f"{of['by_interval']} agree by their interval; all do in {of['within']} of the {of['predicted']} "
+            "experiments "
+            f"that have such figures. {of['right']} of {of['modes']} modes of failure and trends are right")
 
 
 def misses(told: Sequence[Experiment]) -> list[tuple[Experiment, Row]]:
@@ -72,8 +81,8 @@ def page(told: Sequence[Experiment]) -> str:
         "## What misses, and why", ""]
     missed = misses(told)
     if missed:
-        lines += ["| figure | measured | Lamella | factor |", "|---|---|---|---|"]
-        lines += [f"| {e.title}: {row.what} | {_range(row.low, row.high)} | {number(row.predicted)} | "
+        lines += ["| figure | measured | Lamella | factor between the nearest ends |", "|---|---|---|---|"]
+        lines += [f"| {e.title}: {row.what} | {_range(row.low, row.high)} | {_found(row)} | "
                   f"{number(row.miss)} |" for e, row in missed]
         lines += ["", "The reasons are told with each experiment below.", ""]
     for e in told:

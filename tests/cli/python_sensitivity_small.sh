@@ -1,4 +1,4 @@
-# lamella sensitivity: Sobol' indices of known functions, elasticities that dimensions tell, samples without an answer; files,
+# slow: lamella sensitivity: Sobol' indices of known functions, elasticities that dimensions tell, samples without an answer; files,
 # the picture, mistakes.
 . "$(dirname "$0")/common.sh"
 package scipy
