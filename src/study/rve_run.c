@@ -184,7 +184,7 @@ static PetscErrorCode StartFromInflated(LamRVERun *run, LamResponse inflated[2])
     PetscFunctionReturn(0);
   }
   LamLoadsFromInflated(run->scene, load.F);
-  if (!run->scene->sealed && !LamWallsRelax(&run->scene->micro)) PetscFunctionReturn(0);
+  if (!run->scene->sealed) PetscFunctionReturn(0);
   PetscCall(LamMeshesSeal(&run->meshes, run->scene, &load));
   load.duration = 0;
   PetscCall(LamMeshesSolve(&run->meshes, &load, NULL, inflated));

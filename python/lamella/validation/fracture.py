@@ -37,9 +37,9 @@ def alvarez() -> Experiment:
         "largest values. Allowed of the falls: a quarter.",
         f"Nothing. Stored: the apple of [the six tissues](tissues.md) after {days} days at 2 °C. What a crack spends "
         "is proportional to what the lamella spends, and K is the root of modulus times energy.",
-        "The modulus and the loss of energy agree, the latter with a wide interval: rates in storage are "
-        "estimates. Toughness falls more than Lamella says, which leaves the tissue nearly as stiff as it was: "
-        "stored apples soften more than by the walls and the turgor of that scene.",
+        "The modulus agrees, and so does the loss of energy, with a wide interval: rates in storage are estimates. "
+        "Toughness falls more than the scene itself says, which leaves the tissue nearly as stiff as it was; only the "
+        "fastest rates of the interval reach what was measured.",
         [Row("K²/R, the modulus", "MPa", 2.5, 6.25, *band(fresh)),
          Row("energy of fracture after four weeks, over fresh", "", 0.7 - 0.075, 0.7 + 0.075, *band(lamella)),
          Row("toughness after four weeks, over fresh", "", 0.5 - 0.125, 0.5 + 0.125,

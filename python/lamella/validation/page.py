@@ -71,12 +71,11 @@ def page(told: Sequence[Experiment]) -> str:
         "# Against measurements", "",
         "What was published of fruit and vegetables, and what Lamella finds for it. `lamella validate` solves all of "
         "it anew and writes this page. Figures are as abstracts and open pages give them; nothing was measured for "
-        "this "
-        "program. Each experiment says what was chosen or fitted; all else was predicted.", "",
+        "this program. Each experiment says what was chosen or fitted; all else was predicted.", "",
         "An interval behind a prediction holds 95 % of 40 samples of what is not known of the tissue (walls, sizes "
-        "of cells: [tissues](tissues.md)); of a mean over tissues it is that of the mean. A figure *agrees* where "
-        "that interval "
-        "and the measured one have values in common. Where a source tells no scatter, a tenth is allowed.", "",
+        "of cells: [tissues](tissues.md)); of a mean over tissues it is that of the mean. A figure agrees (*yes*) "
+        "where the predicted value was measured, and *by its interval* where that and the measured one have values in "
+        "common: the wider an interval, the less that says. Where a source tells no scatter, a tenth is allowed.", "",
         f"**{summary(told)}.**", "", "![Predicted over measured](../figures/validation.png)", "",
         "## What misses, and why", ""]
     missed = misses(told)
