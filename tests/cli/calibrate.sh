@@ -1,4 +1,4 @@
-# lamella calibrate: the example of the reference; a fit of curves and figures of several scenes, its file, mistakes.
+# slow: lamella calibrate: the example of the reference; a fit of curves and figures of several scenes, its file, mistakes.
 . "$(dirname "$0")/common.sh"
 package scipy
 
