@@ -1,4 +1,4 @@
-# lamella rve and process --uncertainty: quantiles of samples, of responses that are known; counts; samples without an
+# slow: lamella rve and process --uncertainty: quantiles of samples, of responses that are known; counts; samples without an
 # answer; refusals; pictures.
 . "$(dirname "$0")/common.sh"
 package scipy
