@@ -55,8 +55,8 @@ def summary(told: Sequence[Experiment]) -> str:
     of = counts(told)
     modes = f". {of['right']} of {of['modes']} modes of failure and trends are right" if of["modes"] else ""
     return (f"{of['experiments']} experiments. Of {of['figures']} predicted figures {of['inside']} are as measured, "
-            f"{of['by_interval']} agree by their interval; all do in {of['within']} of the {of['predicted']} experiments "
-            f"that have such figures{modes}")
+            f"{of['by_interval']} agree by their interval; all do in {of['within']} of the {of['predicted']} "
+            f"experiments that have such figures{modes}")
 
 
 def misses(told: Sequence[Experiment]) -> list[tuple[Experiment, Row]]:
