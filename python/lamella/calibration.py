@@ -16,7 +16,6 @@ line in place of the model.
 """
 import json
 import math
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, parallel, scene_dict
+from ._files import make_folder, write_whole
 from ._served import end_with_program, served
 from .measured import Curve, Experiment, Figures, experiment
 from .parameters import Parameter, Range, uncertain, varied
@@ -282,8 +282,7 @@ def run(request: dict[str, Any]) -> None:
     print(json.dumps(told) if request.get("json") else fit)
     if not folder:
         return
-    os.makedirs(folder, exist_ok=True)
-    (Path(folder) / "fit.json").write_text(json.dumps(told) + "\n", encoding="utf-8")
+    write_whole(make_folder(folder) / "fit.json", json.dumps(told) + "\n")
     if not request.get("json"):
         print(f"wrote {Path(folder) / 'fit.json'}", flush=True)
 

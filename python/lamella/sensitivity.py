@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, Scene, parallel, scene_dict
+from ._files import make_folder, write_whole
 from ._served import end_with_program, progress as shown, served
 from .measured import FACTORS, FIGURES, OF_FAILURE, read_off, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
@@ -238,9 +239,9 @@ class Sensitivity:
 
     def write(self, folder: str | os.PathLike[str]) -> None:
         """sensitivity.json and samples.csv in a folder. OSError: they cannot be written."""
-        _make(folder)
-        _write(Path(folder) / "samples.csv", self.table())
-        _write(Path(folder) / "sensitivity.json", json.dumps(self.told()) + "\n")
+        make_folder(folder)
+        write_whole(Path(folder) / "samples.csv", self.table())
+        write_whole(Path(folder) / "sensitivity.json", json.dumps(self.told()) + "\n")
 
 
 def _value(found: Found, name: str) -> float:
@@ -273,24 +274,6 @@ def _words(figure: Figure) -> str:
     if figure.missing and not figure.reason:
         text += f"; {figure.missing} evaluations have none: their rows are left out"
     return text
-
-
-def _make(folder: str | os.PathLike[str]) -> None:
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise OSError(f"{os.fspath(folder)}: cannot be made: {error.strerror or error}") from None
-
-
-def _write(path: Path, text: str) -> None:
-    """A file, whole or not at all."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        aside.write_text(text, encoding="utf-8")
-        os.replace(aside, path)
-    except OSError as error:
-        aside.unlink(missing_ok=True)
-        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
 def _fails(scene: dict[str, Any]) -> bool:
@@ -373,7 +356,7 @@ def run(request: dict[str, Any]) -> None:
     """What `lamella sensitivity` does."""
     folder, figures = request.get("output"), request.get("figure")
     if folder:
-        _make(folder)
+        make_folder(folder)
     told = study(request["scene"], request.get("evaluations", 1000), figures.split(",") if figures else None,
                  request.get("seed", 0), request.get("processes"), shown("evaluations"))
     print(json.dumps(told.told()) if request.get("json") else told)

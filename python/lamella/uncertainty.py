@@ -13,12 +13,12 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import Error, InputError, parallel, program, scene_dict
+from ._files import make_folder, write_whole
 from ._served import UNSOLVED, end_with_program, progress as shown, served
 from .measured import FACTORS, FIGURES, figures_in, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
@@ -274,9 +274,8 @@ def run(request: Object) -> int:
                  request.get("processes"), (lambda done, total: None) if request.get("quiet") else shown("samples"))
     print(json.dumps(told) if request.get("json") else "\n".join(table(told)))
     if request.get("output"):
-        file = Path(request["output"]) / "uncertainty.json"
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(json.dumps(told, allow_nan=False) + "\n", encoding="utf-8")
+        file = make_folder(request["output"]) / "uncertainty.json"
+        write_whole(file, json.dumps(told, allow_nan=False) + "\n")
         if not request.get("json"):
             print(f"wrote {file}")
     sys.stdout.flush()

@@ -1,5 +1,5 @@
-# slow: lamella sensitivity: Sobol' indices of known functions, elasticities that dimensions tell, samples without an answer; files,
-# the picture, mistakes.
+# slow: lamella sensitivity: rows that are missing, elasticities that dimensions tell, samples without an answer;
+# files, the picture, mistakes.
 . "$(dirname "$0")/common.sh"
 package scipy
 
@@ -21,31 +21,8 @@ import lamella
 from lamella.measured import read_off
 from lamella.sensitivity import Figure, study
 from lamella.sobol import points, rows_for, sobol
+from known_functions import ishigami
 from raises import raises
-
-def sizes(first, total, of):
-    """The largest error, and the share of the intervals that hold the indices."""
-    exact, found = np.array([first, total]), np.array([of.first, of.total])
-    ends = np.array([of.first_interval, of.total_interval])
-    return np.abs(found - exact).max(), np.mean((ends[..., 0] <= exact) & (exact <= ends[..., 1]))
-
-# Ishigami's function (a = 7, b = 0.1) and Sobol's g of eight inputs: 2048 rows, 10,240 and 20,480 evaluations, are enough for
-# errors of 0.02 in all indices
-def ishigami(u):
-    x = np.pi * (2 * u - 1)
-    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
-
-A = np.array([0, 1, 4.5, 9, 99, 99, 99, 99])
-parts = np.array([(1 + 0.1 * np.pi**4 / 5) ** 2 / 2, 49 / 8, 0.01 * np.pi**8 * (1 / 18 - 1 / 50)])  # V1, V2, V13
-alone = 1 / (3 * (1 + A) ** 2)
-known = {3: (ishigami, np.array([*parts[:2], 0]) / parts.sum(), np.array([parts[0] + parts[2], parts[1], parts[2]]) / parts.sum()),
-         8: (lambda u: np.prod((np.abs(4 * u - 2) + A) / (1 + A), axis=1), alone / (np.prod(1 + alone) - 1),
-             alone / (1 + alone) * np.prod(1 + alone) / (np.prod(1 + alone) - 1))}
-assert np.allclose(known[3][2], [0.5576, 0.4424, 0.2437], atol=1e-4) and np.isclose(known[8][2][0], 0.7871, atol=1e-4)
-for k, (f, first, total) in known.items():
-    for seed in range(3):
-        error, held = sizes(first, total, sobol(f(points(k, 2048, seed)), k, seed))
-        assert error < 0.02 and held > 0.9, (k, seed, error, held)
 
 # rows with NaN are left out as if they had not been there; of a constant, and of too few rows, there are no indices
 u = points(3, 256)

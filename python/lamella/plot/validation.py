@@ -3,7 +3,7 @@ other. Bars are intervals; the tinted strip is what was measured, its middle at 
 import numpy as np
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
-from .page import LINES, RED, SMALL, TITLE, WIDTH, Page, settle, styled
+from .page import LINES, RED, SMALL, WIDTH, Page, settle, styled
 
 MARGIN, ROW, HEAD, TEXT = 9, 11.5, 15, 262  #: points: of rows, of titles of experiments, room for words on the left
 LOWEST, HIGHEST = 0.1, 10.0  #: of predicted over measured that is drawn; beyond it an arrow stands

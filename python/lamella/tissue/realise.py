@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .. import Error, InputError, Scene, parallel, program, scene_dict
+from .._files import write_whole
 from .._served import end_with_program, progress as shown, served
 from . import realised, scatter
 from .file import Tissue
@@ -29,17 +30,6 @@ Object: TypeAlias = dict[str, Any]
 def _words(error: Exception) -> str:
     """A message without the command that it came from."""
     return re.sub(r"^lamella[ a-z]*: ", "", str(error))
-
-
-def _write(path: Path, text: str) -> None:
-    """A file, whole or not at all."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        aside.write_text(text, encoding="utf-8")
-        os.replace(aside, path)
-    except OSError as error:
-        aside.unlink(missing_ok=True)
-        raise OSError(f"{path}: cannot be written: {error.strerror or error}") from None
 
 
 def _read(path: Path) -> Any:
@@ -105,7 +95,7 @@ class Plan:
         except OSError as error:
             raise OSError(f"{self.folder}: cannot be made: {error.strerror or error}") from None
         if not file.exists():
-            _write(file, json.dumps(told, indent=2) + "\n")
+            write_whole(file, json.dumps(told, indent=2) + "\n")
         elif _read(file) != told:
             raise InputError(f"{self.folder}: has realisations of another scene or tissue: give another folder by -o, "
                              "or remove it")
@@ -153,7 +143,7 @@ def _scene_of(plan: Plan, job: Job, tissue: Path) -> Object:
 def _rve(plan: Plan, job: Job, ending: str, scene: Object, *options: str) -> Object:
     """What `lamella rve` tells: states by their numbers from 1, failure and test."""
     path = job.file(plan, ending)
-    _write(path, json.dumps(scene, indent=2) + "\n")
+    write_whole(path, json.dumps(scene, indent=2) + "\n")
     told: Object = {"states": []}
     for entry in program.run("rve", path, "--tangent", "--no-estimate", *options).objects:
         if "state" in entry:
@@ -172,7 +162,7 @@ def _solve(plan: Plan, job: Job) -> Object:
     rest = {name: value for name, value in scene.items() if name != "strength"} | {"load": AT_REST}
     told = {"seed": job.seed, "rest": _rve(plan, job, "rest.yaml", rest)["states"][0]}
     told |= _rve(plan, job, "yaml", scene, *(["--failure", "--readings"] if plan.failure else []))
-    _write(path, json.dumps(told) + "\n")
+    write_whole(path, json.dumps(told) + "\n")
     return told
 
 
@@ -210,7 +200,7 @@ def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[in
     if all(isinstance(told, str) for told in solved.values()):
         raise InputError(f"none of {len(jobs)} realisations could be solved; the first one: {solved[jobs[0]]}")
     told = realised.summary(path, plan, solved, len(Scene(path)))
-    _write(plan.folder / "realisations.json", json.dumps(told, allow_nan=False) + "\n")
+    write_whole(plan.folder / "realisations.json", json.dumps(told, allow_nan=False) + "\n")
     return told
 
 

@@ -136,6 +136,11 @@ def changed(of: Scene, turgor: float, walls: float = 1, lamella: float = 1) -> S
     return of
 
 
+def number_of(value: str) -> float:
+    """Of a quantity, in its unit."""
+    return float(value.split()[0])
+
+
 def _times(value: str, factor: float) -> str:
     number, unit = value.split()
     return f"{float(number) * factor!r} {unit}"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import InputError
+from .._files import make_folder, write_whole
 from .._served import end_with_program, served
 from . import Experiment, experiments
 from .page import counts, misses, number, page, summary
@@ -62,8 +63,7 @@ def run(request: dict[str, Any]) -> None:
 
 def _write(folder: Path, told: list[Experiment], silent: bool) -> None:
     plot, picture = (import_module(f"lamella.plot{part}") for part in ("", ".validation"))
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "validation.md").write_text(page(told), encoding="utf-8")
+    write_whole(make_folder(folder) / "validation.md", page(told))
     plot.save(picture.draw(told), str(folder / "validation.png"), 200)
     if not silent:
         print(f"wrote {folder / 'validation.md'} and {folder / 'validation.png'}", flush=True)

@@ -7,7 +7,8 @@ import numpy as np
 
 from .. import RVE, scene_dict
 from ..measured import read_off
-from . import TISSUES, Experiment, Mode, Row, Scene, band, changed, figures, followed, pulled, samples, tissue
+from . import (TISSUES, Experiment, Mode, Row, Scene, band, changed, figures, followed, number_of, pulled, samples,
+               tissue)
 
 GAP = 0.381 - 0.161  #: /min, between the rates of lamella and walls of cooked carrot
 LIMP = 0.001  #: MPa, a turgor that is none
@@ -35,11 +36,12 @@ def _ratio(of: Scene) -> float:
 def de_belie() -> Experiment:
     of = tissue("pear", pulled(1.6, 24), {"wall": "60 MPa", "lamella_normal": "20 MPa"})
     end = followed([scene_dict(str(TISSUES / "pear.yaml"))])[0]
-    firm, soft = changed(of, 0.12), changed(of, *(end[name] for name in ("turgor", "walls", "lamella")))
+    fresh = number_of(of["rve"]["turgor"]["pressure"])
+    firm, soft = changed(of, fresh), changed(of, *(end[name] for name in ("turgor", "walls", "lamella")))
     told = figures([firm, soft], failure=True)
     drawn = samples(of)
     strength = [[t.get("failure.stress", math.nan) for t in figures([changed(each, p) for each in drawn], failure=True)]
-                for p in (0.12, LIMP)]
+                for p in (fresh, LIMP)]
     bath = band(np.divide(strength[1], strength[0]))
     limits = [_limit(each) for each in (firm, soft)]
     harvest = limits[1] * end["lamella"] / end["walls"]
@@ -66,7 +68,7 @@ def verlinden() -> Experiment:
     of = tissue("carrot", pulled(1.6, 24), {"wall": "100 MPa", "lamella_normal": "40 MPa"})
     minutes = np.array([0, 2, 5, 10, 20])
     walls, lamella = np.exp(-0.161 * minutes), np.exp(-0.381 * minutes)
-    raw = changed(of, 0.9)
+    raw = changed(of, number_of(of["rve"]["turgor"]["pressure"]))
     cooked = [changed(of, LIMP, w, l) for w, l in zip(walls, lamella)]
     told = figures([raw, *cooked], failure=True)
     limit, turgid = _limit(cooked[0]), _limit(raw)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import program
 from ..calibration import Figures, calibrate
-from . import Experiment, Row, Scene, about, band, changed, figures, pulled, samples, tissue
+from . import Experiment, Row, Scene, about, band, changed, figures, number_of, pulled, samples, tissue
 
 UNIAXIAL = 0.75  #: Young's modulus over the modulus in plane strain, of an incompressible isotropic solid
 PLANE = ("Lamella's tissue is stretched in a section and cannot move along the third direction; a free sample can, and "
@@ -58,6 +58,7 @@ def niklas() -> Experiment:
     turgid = changed(_potato(), 0.4)
     wanted = Figures(turgid, {"modulus (MPa)": (19 / UNIAXIAL, 1.9 / UNIAXIAL)})
     stiff = calibrate({"rve.wall.C1": ("20 MPa", "2000 MPa")}, [wanted], starts=1)
+    times = stiff.values[0] / number_of(turgid["rve"]["wall"]["C1"])
     limp = UNIAXIAL * 1e-6 * figures([changed(stiff.scene(turgid), 0.01)])[0]["modulus"]
     rows = [Row("Young's modulus at -1.4 MPa (limp)", "MPa", *about(1.2), *band(E[:, 0])),
             Row("Young's modulus at -0.4 MPa (turgor 0.4 MPa)", "MPa", *about(19), *band(E[:, 1]))]
@@ -67,7 +68,7 @@ def niklas() -> Experiment:
         f"is allowed. Turgor: osmotic pressure of 0.8 MPa less what the potential is below 0, at least none. {PLANE}",
         "Nothing.",
         "Limp tissue agrees, turgid tissue does not: by Nilsson's line it would have 3.9 MPa, a fifth of Niklas's "
-        f"figure, and Lamella agrees with that. A fit of the walls to 19 MPa needs {stiff.values[0] / 20:.0f} times "
+        f"figure, and Lamella agrees with that. A fit of the walls to 19 MPa needs {times:.0f} times "
         f"the modulus C1, and limp tissue would then have {limp:.0f} MPa. What would raise one and not the other, "
         "walls that stiffen as turgor "
         "stretches them (law `fibre_exponential`), was not fitted: one figure does not tell its two parameters.", rows)
@@ -87,7 +88,7 @@ def _section(radius: float, layer: float) -> Scene:
 def section() -> Experiment:
     areas, seen = (20.0, 250.0), (5.0, 19.0)  # mm^2, MPa
     small, large = (math.sqrt(area / math.pi) for area in areas)
-    cells = 2 * 0.09  # mm, across
+    cells = 2e-3 * number_of(_potato()["rve"]["cell"]["apothem"])  # mm, across
     told = [t["modulus"] for t in figures([_section(small, cells), _section(large, cells),
                                            _section(small, 0.999 * small)])]
     found, limp = told[0] / told[1], told[2] / told[1]
