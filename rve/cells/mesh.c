@@ -201,15 +201,23 @@ static void TieOuterNodes(LamMesh *mesh)
     for (PetscInt i = 2 * mesh->flat[face][0]; other >= 0 && i <= 2 * mesh->flat[face][1]; ++i)
       Tie(mesh, LamMeshOuterNode(mesh, face, i), LamMeshOuterNode(mesh, other, 2 * mesh->along - i));
   }
-  for (PetscInt i = 0; i < mesh->node_count; ++i) mesh->node_class[i] = FirstOf(mesh->node_class, i);
 }
 
-/* Assigns the nodes of outer walls that follow F to the origin. */
+/* Assigns the nodes of outer walls that follow F to the origin, with all nodes tied to them: a bonded cell may touch
+   the grip in a vertex only. Other nodes get their representative. */
 static void HoldNodes(LamMesh *mesh)
 {
+  PetscInt *class = mesh->node_class;
+
+  for (PetscInt i = 0; i < mesh->node_count; ++i) class[i] = FirstOf(class, i);
   for (PetscInt face = 0; face < mesh->tissue->faces; ++face)
-    for (PetscInt i = 0; mesh->tissue->held[face] && i < 3 * mesh->along; ++i)
-      mesh->node_class[LamMeshNode(mesh, LamMeshRing(mesh, face, i / 3, i % 3), mesh->radial_nodes - 1)] = ORIGIN;
+    for (PetscInt i = 0; mesh->tissue->held[face] && i < 3 * mesh->along; ++i) {
+      const PetscInt node = LamMeshNode(mesh, LamMeshRing(mesh, face, i / 3, i % 3), mesh->radial_nodes - 1);
+
+      if (class[node] != ORIGIN) class[class[node]] = ORIGIN;
+    }
+  for (PetscInt i = 0; i < mesh->node_count; ++i)
+    if (class[i] != ORIGIN) class[i] = class[class[i]];
 }
 
 /* Numbers the classes in node order, after the origin if there is one, and sets the shifts. */

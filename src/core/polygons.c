@@ -30,6 +30,8 @@ typedef struct {
   PetscInt *point;                       /* [vertex] the first vertex at the same point */
   PetscInt (*wrap)[2];                   /* [vertex] periods from there */
   PetscInt *around;                      /* [vertex] faces that start at this point */
+  PetscBool *outer;                      /* [face] a border to the outside of a patch, not to an air space within it */
+  PetscReal air, outside;                /* areas that loops of borders enclose: air spaces, and all of a patch */
 } Builder;
 
 static PetscReal Cross(const PetscReal a[2], const PetscReal b[2])
@@ -250,7 +252,61 @@ static PetscErrorCode FindPartners(Builder *b)
   PetscFunctionReturn(0);
 }
 
-/* Outer walls of a patch that follow F: with affine sides all, otherwise those at the lowest and highest X2. */
+/* ---- loops of borders ---- */
+
+/* The border behind a border: around the cells that meet at its end. */
+static PetscInt NextBorder(LamTissue t, PetscInt face)
+{
+  PetscInt next = LamTissueNext(t, face);
+
+  while (t->partner[next] >= 0) next = LamTissueNext(t, t->partner[next]);
+  return next;
+}
+
+/* Area to the left of a loop of borders, negative for an air space; infinite for one that goes on to its own image. */
+static PetscReal LoopArea(const Builder *b, PetscInt start)
+{
+  PetscReal area = 0.0, x[2] = {0.0, 0.0};
+  PetscInt face = start;
+
+  do {
+    const PetscReal *v = b->of->vertex[b->of->corner[face]], *w = b->of->vertex[EndOf(b, face)];
+    const PetscReal next[2] = {x[0] + w[0] - v[0], x[1] + w[1] - v[1]};
+
+    area += 0.5 * Cross(x, next);
+    x[0] = next[0];
+    x[1] = next[1];
+    face = NextBorder(b->tissue, face);
+  } while (face != start);
+  return hypot(x[0], x[1]) > 1e-3 * b->size ? INFINITY : area;
+}
+
+static PetscErrorCode FindLoops(Builder *b)
+{
+  const LamTissue t = b->tissue;
+  PetscBool *met;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(t->faces, &met));
+  for (PetscInt k = 0; k < t->faces; k++) {
+    if (t->partner[k] >= 0 || met[k]) continue;
+    const PetscReal area = LoopArea(b, k);
+
+    if (area > 0.0)
+      b->outside += area;
+    else
+      b->air -= area;
+    for (PetscInt face = k; !met[face]; face = NextBorder(t, face)) {
+      met[face] = PETSC_TRUE;
+      b->outer[face] = (PetscBool)(area > 0.0);
+    }
+  }
+  PetscCall(PetscFree(met));
+  PetscFunctionReturn(0);
+}
+
+/* Outer walls of a patch that follow F: with affine sides all to the outside, otherwise those at the lowest and highest
+   X2. */
 static PetscErrorCode HoldFaces(Builder *b)
 {
   const LamPolygons *p = b->of;
@@ -269,7 +325,8 @@ static PetscErrorCode HoldFaces(Builder *b)
     if (b->tissue->partner[k] >= 0) continue;
     if (top - low <= off) where[0] = low;
     if (high - bottom <= off) where[1] = high;
-    b->tissue->held[k] = (PetscBool)(p->sides == LAM_SIDES_AFFINE || top - low <= off || high - bottom <= off);
+    b->tissue->held[k] =
+        (PetscBool)((p->sides == LAM_SIDES_AFFINE && b->outer[k]) || top - low <= off || high - bottom <= off);
   }
   MUST(
       p->sides == LAM_SIDES_AFFINE || (where[0] == low && where[1] == high),
@@ -340,56 +397,22 @@ static PetscErrorCode SetSetbacks(Builder *b)
 
 /* ---- areas ---- */
 
-/* The border behind a border: around the cells that meet at its end. */
-static PetscInt NextBorder(LamTissue t, PetscInt face)
-{
-  PetscInt next = LamTissueNext(t, face);
-
-  while (t->partner[next] >= 0) next = LamTissueNext(t, t->partner[next]);
-  return next;
-}
-
-/* Area to the left of a loop of borders, negative for an air space; infinite for one that goes on to its own image. */
-static PetscReal LoopArea(const Builder *b, PetscInt start, PetscBool met[])
-{
-  PetscReal area = 0.0, x[2] = {0.0, 0.0};
-
-  for (PetscInt face = start; !met[face]; face = NextBorder(b->tissue, face)) {
-    const PetscReal *v = b->of->vertex[b->of->corner[face]], *w = b->of->vertex[EndOf(b, face)];
-    const PetscReal next[2] = {x[0] + w[0] - v[0], x[1] + w[1] - v[1]};
-
-    met[face] = PETSC_TRUE;
-    area += 0.5 * Cross(x, next);
-    x[0] = next[0];
-    x[1] = next[1];
-  }
-  return hypot(x[0], x[1]) > 1e-3 * b->size ? INFINITY : area;
-}
-
 /* Of a period whose cells leave a way through the air between all of them, an island or a strip, the outline says
    nothing of that air. */
 static PetscErrorCode SetArea(Builder *b)
 {
   const LamPolygons *p = b->of;
   const PetscReal period = Cross(b->period[0], b->period[1]);
-  PetscReal cells = 0.0, air = 0.0, outside = 0.0;
-  PetscBool *met;
+  PetscReal cells = 0.0;
 
   PetscFunctionBeginUser;
   for (PetscInt cell = 0; cell < p->cells; cell++) cells += AreaOf(p, cell);
-  PetscCall(PetscCalloc1(b->tissue->faces, &met));
-  for (PetscInt k = 0; k < b->tissue->faces; k++) {
-    const PetscReal area = b->tissue->partner[k] >= 0 || met[k] ? 0.0 : LoopArea(b, k, met);
-
-    air -= PetscMin(0.0, area);
-    outside += PetscMax(0.0, area);
-  }
-  PetscCall(PetscFree(met));
-  b->tissue->area = p->is_patch ? outside : period;
-  MUST(fabs(b->tissue->area - cells - air) < 1e-5 * b->tissue->area || (!p->is_patch && outside > (1.0 - SAME) * cells),
+  b->tissue->area = p->is_patch ? b->outside : period;
+  MUST(fabs(b->tissue->area - cells - b->air) < 1e-5 * b->tissue->area ||
+           (!p->is_patch && b->outside > (1.0 - SAME) * cells),
        "%s: cells of %.8g and air spaces of %.8g do not add up to the area of %.8g: cells overlap, or vertices where "
        "three cells meet are missing in one of them",
-       p->name, (double)cells, (double)air, (double)b->tissue->area);
+       p->name, (double)cells, (double)b->air, (double)b->tissue->area);
   PetscFunctionReturn(0);
 }
 
@@ -459,6 +482,7 @@ static PetscErrorCode Build(Builder *b)
          "%s: vertices %d and %d of cells[%d] are at the same place", p->name, (int)v, (int)w, (int)b->tissue->cell[k]);
   }
   PetscCall(FindPartners(b));
+  PetscCall(FindLoops(b));
   PetscCall(HoldFaces(b));
   SetDirections(b);
   PetscCall(SetSetbacks(b));
@@ -478,10 +502,10 @@ PetscErrorCode LamTissueFromPolygons(const LamPolygons *p, PetscReal *apothem, L
   MUST(p->cells > 0, "%s: cells: there is none", p->name);
   PetscCall(LamTissueAllocate(p->cells, p->first[p->cells], &b.tissue));
   PetscCall(PetscMalloc2(p->vertices, &b.point, p->vertices, &b.wrap));
-  PetscCall(PetscCalloc1(p->vertices, &b.around));
+  PetscCall(PetscCalloc2(p->vertices, &b.around, b.tissue->faces, &b.outer));
   ierr = Build(&b);
   PetscCall(PetscFree2(b.point, b.wrap));
-  PetscCall(PetscFree(b.around));
+  PetscCall(PetscFree2(b.around, b.outer));
   if (ierr) PetscCall(LamTissueDestroy(&b.tissue));
   PetscCall(ierr);
   *apothem = b.size / sqrt(2.0 * sqrt(3.0));
