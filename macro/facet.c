@@ -2,6 +2,7 @@
   Facets of a plane body's boundary: quadratic edges.
 */
 #include "macro_impl.h"
+#include <math.h>
 
 PetscErrorCode LamMacroFacetNodes(LamMacro macro, const LamMacroFacet *facet, PetscReal X[6], PetscReal *sense)
 {
@@ -38,6 +39,25 @@ void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *
 PetscReal LamMacroAround(LamMacro macro, const PetscReal N[3], const PetscReal x[6])
 {
   return macro->axisymmetric ? 2 * PETSC_PI * (N[0] * x[0] + N[1] * x[2] + N[2] * x[4]) : 1;
+}
+
+PetscErrorCode LamMacroFaces(LamMacro macro, const char on[], const PetscReal direction[2], PetscBool *faces)
+{
+  const PetscInt set = LamMacroFindSet(macro, on);
+  const PetscReal tiny = 1e-8; /* as below */
+  PetscReal X[6], sense;
+
+  PetscFunctionBeginUser;
+  *faces = PETSC_FALSE;
+  for (PetscInt f = 0; f < macro->facet_count; f++) {
+    if (!(macro->facets[f].sets >> set & 1)) continue;
+    PetscCall(LamMacroFacetNodes(macro, &macro->facets[f], X, &sense));
+    const PetscReal outward[2] = {sense * (X[5] - X[3]), -sense * (X[4] - X[2])};
+    if (outward[0] * direction[0] + outward[1] * direction[1] < -tiny * hypot(outward[0], outward[1]))
+      *faces = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, faces, 1, MPIU_BOOL, MPI_LOR, macro->comm));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2])

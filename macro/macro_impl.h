@@ -387,6 +387,8 @@ void LamMacroFacetShape(PetscInt q, PetscReal N[3], PetscReal dN[3], PetscReal *
 PetscReal LamMacroAround(LamMacro macro, const PetscReal N[3], const PetscReal x[6]);
 /* Outward unit normal of a condition's side; PETSC_ERR_USER_INPUT if it is not straight. */
 PetscErrorCode LamMacroStraightNormal(LamMacro macro, const LamBoundary *boundary, PetscReal normal[2]);
+/* Whether the outward normal of some part of a side points against a direction. Collective. */
+PetscErrorCode LamMacroFaces(LamMacro macro, const char on[], const PetscReal direction[2], PetscBool *faces);
 
 /* boundary.c */
 /* Checks that each condition names a boundary of the mesh (else PETSC_ERR_USER_INPUT). */
@@ -395,8 +397,6 @@ PetscErrorCode LamMacroBoundaryCheck(LamMacro macro);
 PetscBool LamMacroIsOn(LamMacro macro, PetscInt p, const char on[]);
 /* Sets the names of the step's sides, each once. */
 PetscErrorCode LamMacroBoundaryNames(const LamMacroSpec *spec, LamMacroStep *step);
-/* Index of a condition's name among these. */
-PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary);
 /* Prescribes sides of symmetry, the axis, and the minimum of components that prevents the remaining rigid motions. */
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro);
 /*

@@ -82,6 +82,7 @@ static PetscReal Reach(LamMacro macro, const LamObstacle *obstacle, PetscInt o, 
 static PetscErrorCode Direction(LamMacro macro, const LamBoundary *boundary, PetscReal direction[2])
 {
   const PetscReal length = hypot(boundary->displacement[0], boundary->displacement[1]);
+  PetscBool faces;
 
   PetscFunctionBeginUser;
   if (boundary->kind == LAM_BOUNDARY_INDENTER) {
@@ -92,6 +93,12 @@ static PetscErrorCode Direction(LamMacro macro, const LamBoundary *boundary, Pet
     PetscCall(LamMacroStraightNormal(macro, boundary, direction));
     for (int i = 0; i < 2; i++) direction[i] = -direction[i];
   }
+  PetscCall(LamMacroFaces(macro, boundary->on, direction, &faces));
+  LamMacroRequire(faces, macro, &boundary->place, "macro.boundary: on: %s: %s: no part of this side faces it; %s",
+                  boundary->on, LamBoundaryKindNames[boundary->kind],
+                  boundary->kind == LAM_BOUNDARY_PLATE
+                      ? "write its normal from the plate into the body, such as the opposite one"
+                      : "write a displacement into the body, such as the opposite one");
   PetscFunctionReturn(0);
 }
 

@@ -95,6 +95,9 @@ typedef PetscErrorCode (*LamMacroMonitor)(LamMacro macro, const LamMacroStep *st
 /* Called on all ranks after each failed increment; `why` is the reason, with the material point. */
 typedef PetscErrorCode (*LamMacroCutback)(LamMacro macro, const char why[], void *ctx);
 
+/* Index of a condition's side among `boundary` of the step; -1: there is none. */
+LAM_EXPORT PetscInt LamMacroSideNumber(const LamMacroStep *step, const LamBoundary *boundary);
+
 LAM_EXPORT PetscErrorCode LamMacroCreate(MPI_Comm comm, LamMacro *macro);
 LAM_EXPORT PetscErrorCode LamMacroSetScene(LamMacro macro, const LamScene *scene); /* borrows the scene */
 LAM_EXPORT PetscErrorCode LamMacroSetUp(LamMacro macro);

@@ -68,7 +68,7 @@ PetscErrorCode LamFE2EndStep(LamFE2Run *run, const LamMacroStep *step, PetscInt6
   if (LamIsFirst(run->comm)) ierr = Report(run, step, &fields, peak_memory, done, total);
   PetscCall(LamMacroFieldsDestroy(&fields));
   PetscCall(LamShareError(run->comm, ierr));
-  LamFE2NoteForce(totals, step);
+  LamFE2NoteForce(totals, &run->scene->macro, step);
   run->broken = step->broken_fraction;
   totals->steps++;
   totals->newton_iterations += step->newton_iterations;
@@ -116,6 +116,7 @@ static PetscErrorCode Follow(LamFE2Run *run, LamFE2Follow follow, void *ctx)
   if (run->certify != LAM_CERTIFY_NONE) PetscCall(LamFE2Certify(run));
   PetscCall(LamFE2OpenFiles(run));
   PetscCall(follow(ctx, &stopped, sizeof(status), status));
+  if (!stopped) LamFE2WarnOfObstacles(run);
   if (!stopped) ierr = LamFE2Zoom(run);
   PetscCall(LamShareError(run->comm, ierr));
   if (LamIsFirst(run->comm)) ierr = LamFE2CloseFiles(run, stopped ? "stopped" : status);

@@ -29,6 +29,7 @@ typedef struct {
   PetscInt64 queries, hits, solves, failures;
   PetscInt steps, newton_iterations;
   PetscReal largest_force, force; /* on a side: of all steps, and of the last */
+  unsigned int pressed;           /* bit b: the side of macro.boundary[b] has had a force */
 } LamFE2Totals;
 
 typedef struct LamFE2Run_s {
@@ -87,8 +88,10 @@ typedef PetscErrorCode (*LamFE2Follow)(void *ctx, PetscBool *stopped, size_t siz
 PetscErrorCode LamFE2FollowInFiles(LamFE2Run *run, LamFE2Follow follow, void *ctx);
 
 /* ---- fe2_tear.c ---- */
-/* Counts a step's force. */
-void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroStep *step);
+/* Counts a step's forces. */
+void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroSpec *spec, const LamMacroStep *step);
+/* Warns of plates and indenters that have not touched the body in any step. */
+void LamFE2WarnOfObstacles(const LamFE2Run *run);
 /* Adds to run->message, of a run that did not converge, what a lamella that breaks has to do with it, and what helps;
    broken: broken_fraction of the last step. */
 PetscErrorCode LamFE2ExplainTear(LamFE2Run *run);

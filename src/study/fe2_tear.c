@@ -1,5 +1,5 @@
 /*
-  Why a body whose lamella breaks has no next state, and what helps.
+  Forces of a run: obstacles that never touch; why a body whose lamella breaks has no next state, and what helps.
 
   Newton's method alone cannot tell a body without equilibrium near by from a step that is too long: both end in
   iterations that do not converge. What is told is what the body has come to, and the ways on that there are.
@@ -10,12 +10,39 @@
 
 static const PetscReal TORN = 1e-3; /* of the largest force: what is left is that of threads, chosen */
 
-void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroStep *step)
+static const PetscReal NO_FORCE = 1e-12; /* stress * length: what rounding leaves of forces that are 0 */
+
+void LamFE2NoteForce(LamFE2Totals *totals, const LamMacroSpec *spec, const LamMacroStep *step)
 {
   totals->force = 0;
   for (PetscInt s = 0; s < step->boundary_count; s++)
     totals->force = PetscMax(totals->force, hypot(step->reaction[s][0], step->reaction[s][1]));
   totals->largest_force = PetscMax(totals->largest_force, totals->force);
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    const PetscInt s = LamMacroSideNumber(step, &spec->boundary[b]);
+
+    if (s >= 0 && hypot(step->reaction[s][0], step->reaction[s][1]) > NO_FORCE) totals->pressed |= 1u << b;
+  }
+}
+
+void LamFE2WarnOfObstacles(const LamFE2Run *run)
+{
+  const LamMacroSpec *spec = &run->scene->macro;
+
+  if (!LamIsFirst(run->comm) || run->resumed || !run->totals.steps) return;
+  for (PetscInt b = 0; b < spec->boundary_count; b++) {
+    const LamBoundary *boundary = &spec->boundary[b];
+    char place[LAM_PLACE_TEXT];
+
+    if ((boundary->kind != LAM_BOUNDARY_PLATE && boundary->kind != LAM_BOUNDARY_INDENTER) ||
+        run->totals.pressed >> b & 1)
+      continue;
+    LamReportWarning(&run->reporter,
+                     "%s: macro.boundary: on: %s: the %s has not touched the body in any step, and its forces are 0; "
+                     "write a displacement along its normal into the body",
+                     LamScenePlaceText(run->scene, &boundary->place, place), boundary->on,
+                     LamBoundaryKindNames[boundary->kind]);
+  }
 }
 
 /* Whether forces are prescribed, which nothing balances past the largest one. */

@@ -51,6 +51,17 @@ square >body.msh
 sed 's/steps: 1/&\n  regions: [{name: skin, cell: {wall_thickness: 20 um}}]/' gmsh.yaml >group.yaml
 told 2 group.yaml '12:20: macro.regions: skin: the mesh has no group of elements of this name; write where'
 
+# plates and indenters that never touch the body
+cp "$source/tests/scenes/pressed-disc.yaml" disc.yaml
+sed 's/normal: \[0, -1\]/normal: [0, 1]/' disc.yaml >turned.yaml
+told 2 turned.yaml '13:12: macro.boundary: on: rim: plate: no part of this side faces it; write its normal from the plate into the body'
+sed 's/plate: {displacement.*}}/indenter: {radius: 1 mm, at: [0 mm, 5 mm], displacement: [0 mm, 1 mm]}}/' disc.yaml >leaves.yaml
+told 2 leaves.yaml '13:12: macro.boundary: on: rim: indenter: no part of this side faces it; write a displacement into the body'
+sed 's/displacement: \[0 mm, -1 mm\]/displacement: [0 mm, 1 mm]/' disc.yaml >away.yaml
+told 0 away.yaml '13:12: macro.boundary: on: rim: the plate has not touched the body in any step, and its forces are 0; write'
+expect 0 "$lamella" fe2 disc.yaml --json
+[ ! -s err.txt ] || fail "warns of a plate that presses: $(cat err.txt)"
+
 # a database of other tissue: the keys that differ, with both values
 expect 0 "$lamella" fe2 right.yaml -d part.h5 --json
 sed 's/C4: 1 MPa/C4: 2 MPa/; s/through: 1/through: 2/' right.yaml >other.yaml
