@@ -23,9 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from . import InputError, parallel, scene_dict
+from . import InputError, misfit, parallel, scene_dict
 from ._files import make_folder, write_whole
-from ._served import end_with_program, served
+from ._served import UNSOLVED, end_with_program, served
 from .measured import Curve, Experiment, Figures, experiment
 from .parameters import Parameter, Range, uncertain, varied
 from .program import SceneLike
@@ -34,7 +34,6 @@ __all__ = ["Curve", "Figures", "Parameter", "Fit", "calibrate"]
 STEP = 1e-5  #: of the scaled parameters, for forward differences: solves have ten digits, so that derivatives have five
 LOST = 1e3  #: residual of each point of a curve that the model has not
 BLIND = 0.25  #: of the way between the bounds, chosen: a direction whose 95 % interval is as large is not told
-UNLIKELY = 0.999  #: chosen: a sum of squares that the scatter exceeds once in a thousand times is no scatter
 PROFILE = 17  #: values of a parameter in its profile, the bounds included
 
 
@@ -124,13 +123,13 @@ def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> list[list[tuple[fl
 class Fit:
     """What was found: `values` and 95 % `intervals` [n, 2] in the units of the bounds, `covariance` and `correlation`
     of the scaled parameters, `chi2` (the sum of squares) with `freedom`, `starts`: the sum of squares that each start
-    has ended with, `untold`: directions of the parameters that the data do not tell, as texts; `misfit`: a text where
-    the scenes do not repeat the data within their scatter, or do not reach `lost` of them; `profiles`, by `profile`:
-    of each parameter values and sums of squares, and `profiled`, the intervals that these give, NaN at an end where the
-    data tell no bound."""
+    has ended with, `untold`: directions of the parameters that are not identifiable from the data, as texts; `misfit`:
+    a text where the scenes do not repeat the data, or do not reach some of them; `doubts`: texts on values at a bound,
+    points that contradict each other or are far off, and curves of another form; `profiles`, by `profile`: of each
+    parameter values and sums of squares, and `profiled`, the intervals that these give, NaN at an end where the data
+    give no bound."""
 
     def __init__(self, problem: Problem, u: np.ndarray, chi2: float, starts: list[float]) -> None:
-        from scipy.stats import chi2 as squares
         from scipy.stats import t
         self.problem, self.parameters, self.known = problem, problem.parameters, problem.known
         self.u, self.chi2, self.starts = u, chi2, starts
@@ -153,14 +152,9 @@ class Fit:
         self.intervals = np.array([[p.value(np.clip(x + s * self.width * d, 0, 1)) for s in (-1, 1)]
                                    for p, x, d in zip(self.parameters, u, deviation)])
         self.untold = [self._words(v) for v, s in zip(direction, spread) if self.width * s > BLIND]
-        self.lost = int(np.sum(np.abs(problem.residuals(u)) >= LOST))  #: points that the best fit does not reach
-        self.misfit = ""  #: what says that the scenes do not repeat the data within their scatter
-        if self.known and chi2 > squares.ppf(UNLIKELY, max(self.freedom, 1)):
-            self.misfit = ("the scenes do not repeat the data within their scatter, which would have given less than "
-                           f"{squares.ppf(UNLIKELY, max(self.freedom, 1)):.3g}: the intervals mean nothing")
-        if self.lost:
-            self.misfit = (f"{self.lost} of {problem.points} points are not reached by the best fit: give the scenes' "
-                           "loads more states there, or other bounds")
+        residuals = problem.residuals(u)
+        self.misfit = misfit.overall(problem, residuals, self.freedom, int(np.sum(np.abs(residuals) >= LOST)))
+        self.doubts = misfit.details(problem, u, residuals, self.freedom, self.misfit)
         self.profiles: list[np.ndarray] = []
         self.profiled = np.full((len(u), 2), np.nan)
 
@@ -214,7 +208,7 @@ class Fit:
         words = f", scatter {scatter:.2g} % of the largest value" if scatter else ""
         lines.append(f"sum of squares {self.chi2:.4g}, {self.freedom} degrees of freedom{words}; "
                      f"{sum(s < 1.01 * self.chi2 + 1e-9 for s in self.starts)} of {len(self.starts)} starts end there")
-        return "\n".join(lines + [self.misfit] * bool(self.misfit) + self.untold)
+        return "\n".join(lines + [self.misfit] * bool(self.misfit) + self.doubts + self.untold)
 
     def told(self) -> dict[str, Any]:
         """All of it as an object of JSON."""
@@ -229,7 +223,7 @@ class Fit:
         of = self.problem
         return {"lamella_calibration": 1, "parameters": entries, "correlation": self.correlation.tolist(),
                 "chi2": self.chi2, "freedom": self.freedom, "scatter_known": self.known, "starts": self.starts,
-                "misfit": self.misfit,
+                "misfit": self.misfit, "doubts": self.doubts,
                 "limit": self.chi2 + self.width**2 * self.variance, "untold": self.untold,
                 "experiments": [e.told(of.scene(e, self.u)) for e in of.experiments]}
 
@@ -269,8 +263,8 @@ def _shared(scenes: list[str]) -> tuple[list[Parameter], list[list[Parameter]]]:
     return list(all_of.values()), of
 
 
-def run(request: dict[str, Any]) -> None:
-    """What `lamella calibrate` does."""
+def run(request: dict[str, Any]) -> int:
+    """What `lamella calibrate` does; its exit status."""
     files, folder = request["files"], request.get("output")
     scenes, data = files[::2], files[1::2]
     parameters, of = _shared(scenes)
@@ -280,11 +274,11 @@ def run(request: dict[str, Any]) -> None:
         fit.profile(request.get("processes"))
     told = fit.told()
     print(json.dumps(told) if request.get("json") else fit)
-    if not folder:
-        return
-    write_whole(make_folder(folder) / "fit.json", json.dumps(told) + "\n")
-    if not request.get("json"):
-        print(f"wrote {Path(folder) / 'fit.json'}", flush=True)
+    if folder:
+        write_whole(make_folder(folder) / "fit.json", json.dumps(told) + "\n")
+        if not request.get("json"):
+            print(f"wrote {Path(folder) / 'fit.json'}", flush=True)
+    return UNSOLVED if fit.misfit else 0
 
 
 def main(argument: str) -> int:

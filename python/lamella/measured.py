@@ -4,7 +4,6 @@ A file of data is CSV. A curve has the titles of two members of a response, "F11
 column, `scatter`, the standard deviation of the second. Single figures have the titles "figure, value, scatter", and
 lines such as "modulus (MPa), 3.6, 0.4": what `lamella rve --readings` and `--failure` tell (FIGURES).
 """
-import csv
 import json
 import math
 import os
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import RVE, InputError, Responses, Scene, program, scene_dict
+from . import RVE, InputError, Responses, Scene, columns, program, scene_dict
 from ._library import MEMBERS
 from .parameters import Parameter
 from .program import SceneLike
@@ -26,6 +25,8 @@ FIGURE = re.compile(r"^\s*([a-z_.]+)\s*(?:\(([^)]*)\))?\s*$")
 FIGURES = {"modulus": "MPa", "poisson": "", "bioyield.strain": "", "bioyield.stress": "MPa", "peak.strain": "",
            "peak.stress": "MPa", "energy_to_peak": "kJ/m^3", "work": "kJ/m^3", "returned": "kJ/m^3", "hysteresis": "",
            "failure.factor": "", "failure.strain": "", "failure.stress": "MPa"}
+CURVE_LINES = "F11, P11 (MPa) and 1.05, 0.012"  #: an example
+FIGURE_LINES = "figure, value, scatter and modulus (MPa), 3.6, 0.4"  #: an example
 OF_FAILURE = "failure."
 OF_PEAK, OF_ALL = ("peak.strain", "peak.stress", "energy_to_peak"), ("work", "returned", "hysteresis")
 FACTORS = {"": 1.0, "MPa": 1e6, "kJ/m^3": 1e3}  #: SI values of the units of JSON
@@ -50,14 +51,18 @@ class Curve:
                  scatter: str | float | None = None, keys: set[str] | None = None) -> None:
         self.name = os.fspath(data) if not isinstance(data, dict) else "data"
         self.path, self.scene, self.keys = _path(scene), scene_dict(scene), keys
-        columns = dict(data) if isinstance(data, dict) else _read(self.name)
-        own = columns.pop("scatter", None)
-        if len(columns) != 2:
-            raise InputError(f"{self.name}: has {len(columns)} columns; two are wanted, such as F11 and P11 (MPa)")
-        self.columns = [_Column(self.name, title) for title in columns]
-        self.x, self.y = (c.si(values) for c, values in zip(self.columns, columns.values()))
-        if len(self.x) != len(self.y) or not len(self.x):
-            raise InputError(f"{self.name}: {len(self.x)} and {len(self.y)} numbers in its columns")
+        given, self.lines = (dict(data), []) if isinstance(data, dict) else _read(self.name)
+        own = given.pop("scatter", None)
+        if len(given) != 2:
+            raise InputError(f"{self.name}: has {len(given)} column{'s' * (len(given) != 1)} ({', '.join(given)}); a curve "
+                             "has two, such as F11, P11 (MPa), and may have a third, scatter")
+        self.columns = [_Column(self.name, title) for title in given]
+        self.x, self.y = (c.si(values) for c, values in zip(self.columns, given.values()))
+        if self.x.ndim != 1 or self.x.shape != self.y.shape or not len(self.x):
+            raise InputError(f"{self.name}: numbers of the shapes {self.x.shape} and {self.y.shape} in its columns; a curve "
+                             "has as many of both")
+        if not (np.isfinite(self.x) & np.isfinite(self.y)).all():
+            raise InputError(f"{self.name}: a value is not a finite number")
         self.known = scatter is not None or own is not None
         self.scatter: np.ndarray = np.full(len(self.y), float(np.abs(self.y).max()))
         if isinstance(scatter, str):
@@ -66,8 +71,17 @@ class Curve:
             self.scatter *= scatter
         elif own is not None:
             self.scatter = self.columns[1].si(own)
-        if not (self.scatter > 0).all():
-            raise InputError(f"{self.name}: a scatter of {self.scatter.min():g} is none")
+        if not self.known and not self.y.any():
+            raise InputError(f"{self.name}: column {self.columns[1].title}: all values are 0; give their scatter")
+        if self.scatter.shape != self.y.shape or not (wrong := self.scatter > 0).all():
+            where = f":{self.lines[int(np.argmin(wrong))]}" if self.lines else ""
+            raise InputError(f"{self.name}{where}: a scatter is not above 0" if self.scatter.shape == self.y.shape else
+                             f"{self.name}: {self.scatter.size} numbers of scatter for {len(self.y)} points")
+
+    def point(self, k: int) -> str:
+        """Point k, for messages: its line and values in the units of the titles."""
+        where = f"{self.name}:{self.lines[k]}" if self.lines else f"{self.name}, point {k + 1}"
+        return f"{where}: " + ", ".join(f"{c.title} = {v[k] / c.one:.6g}" for c, v in zip(self.columns, (self.x, self.y)))
 
     def states(self, scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the states of a scene, up to the first that has not converged. InputError: x goes back."""
@@ -138,7 +152,11 @@ class Figures:
         ones = np.array(self.ones)
         self.y, self.scatter = (ones * np.array([float(v[k]) for v in data.values()]) for k in (0, 1))
         if not (self.scatter > 0).all():
-            raise InputError(f"{self.name}: a scatter of {self.scatter.min():g} is none")
+            raise InputError(f"{self.name}: {self.titles[int(np.argmin(self.scatter > 0))]}: its scatter is not above 0")
+
+    def point(self, k: int) -> str:
+        """As of Curve."""
+        return f"{self.name}: {self.titles[k]} = {self.y[k] / self.ones[k]:.6g}"
 
     def model(self, scene: dict[str, Any]) -> np.ndarray:
         """The figures of a scene, SI; NaN where it has none."""
@@ -172,9 +190,8 @@ Experiment = Curve | Figures
 def experiment(scene: SceneLike, path: str, parameters: list[Parameter]) -> Experiment:
     """Of a scene and a file of data, whatever that holds."""
     keys = {p.key for p in parameters}
-    with open(path, encoding="utf-8-sig", errors="replace") as file:
-        first = next((line for line in file if line.strip()), "")
-    return Figures(scene, path, keys) if first.split(",")[0].strip() == "figure" else Curve(scene, path, keys=keys)
+    kind = Figures if columns.read(path, CURVE_LINES)[0][1][0] == "figure" else Curve
+    return kind(scene, path, keys=keys)
 
 
 def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) -> dict[str, Any]:
@@ -269,7 +286,7 @@ class _Column:
     def __init__(self, source: str, title: str) -> None:
         match = COLUMN.match(title)
         if not match:
-            raise InputError(f"{source}: a column {title!r}; wanted is a member of a response, as P11 (MPa)")
+            raise InputError(f"{source}: a column {title!r}; its title is a member of a response with its unit, such as P11 (MPa)")
         self.title, self.member = title.strip(), match[1]
         self.index = tuple(int(i) - 1 for i in match.group(2, 3)) if match[2] else ()
         of = {name: (count, unit) for name, type_, count, _, unit, _ in MEMBERS
@@ -315,43 +332,27 @@ def _figure(source: str, title: str) -> tuple[str, float]:
     return name, quantity(f"1 {unit}", "stress") if unit else 1.0
 
 
-def _rows(path: str) -> list[tuple[int, list[str]]]:
-    """Lines of a CSV file that are not empty, with their numbers."""
-    with open(path, newline="", encoding="utf-8-sig", errors="replace") as file:
-        return [(number, [cell.strip() for cell in row]) for number, row in enumerate(csv.reader(file), 1)
-                if any(cell.strip() for cell in row)]
-
-
-def _numbers(path: str, number: int, row: list[str], count: int) -> list[float]:
-    try:
-        values = [float(cell) for cell in row]
-        if len(values) == count and all(map(math.isfinite, values)):
-            return values
-    except ValueError:
-        pass
-    raise InputError(f"{path}:{number}: {', '.join(row)}: wanted are {count} numbers")
-
-
-def _read(path: str) -> dict[str, ArrayLike]:
-    """Columns of a CSV file by their titles."""
-    rows = _rows(path)
-    if len(rows) < 2:
-        raise InputError(f"{path}: has no numbers; wanted is a line of titles, such as F11, P11 (MPa), and lines of "
-                         "numbers")
-    titles = rows[0][1]
-    values = [_numbers(path, number, row, len(titles)) for number, row in rows[1:]]
-    return {title: [row[k] for row in values] for k, title in enumerate(titles)}
+def _read(path: str) -> tuple[dict[str, ArrayLike], list[int]]:
+    """Columns of a CSV file by their titles, and the numbers of its lines."""
+    (head, titles), *rows = columns.read(path, CURVE_LINES)
+    if twice := next((title for k, title in enumerate(titles) if title in titles[:k]), None):
+        raise InputError(f"{path}:{head}: two columns are called {twice}")
+    if not rows:
+        raise InputError(f"{path}: has no numbers under its line of titles, {', '.join(titles)}")
+    values = [[columns.number(path, line, title, cell) for title, cell in zip(titles, row)] for line, row in rows]
+    return {title: [row[k] for row in values] for k, title in enumerate(titles)}, [line for line, _ in rows]
 
 
 def _read_figures(path: str) -> dict[str, tuple[float, float]]:
-    rows = _rows(path)
-    if len(rows) < 2 or rows[0][1] != ["figure", "value", "scatter"]:
-        raise InputError(f"{path}: wanted is a line of titles, figure, value, scatter, and lines such as "
-                         "modulus (MPa), 3.6, 0.4")
-    told: dict[str, tuple[float, float]] = {}
-    for number, row in rows[1:]:
-        if row[0] in told:
-            raise InputError(f"{path}:{number}: {row[0]}: is there already")
-        value, scatter = _numbers(path, number, row[1:], 2)
-        told[row[0]] = value, scatter
-    return told
+    (head, titles), *rows = columns.read(path, FIGURE_LINES)
+    if titles != ["figure", "value", "scatter"] or not rows:
+        raise InputError(f"{path}:{head}: {', '.join(titles)}: give lines such as {FIGURE_LINES}")
+    read: dict[str, tuple[float, float]] = {}
+    for line, (name, *cells) in rows:
+        if name in read:
+            raise InputError(f"{path}:{line}: {name}: is there already")
+        value, scatter = (columns.number(path, line, title, cell) for title, cell in zip(titles[1:], cells))
+        if scatter <= 0:
+            raise InputError(f"{path}:{line}: column scatter: {scatter:g}: is not above 0")
+        read[name] = value, scatter
+    return read

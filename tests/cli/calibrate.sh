@@ -45,9 +45,13 @@ sed 's/, {key: rve.turgor.pressure.*}\]/]/' tension.yaml >one.yaml
 expect 0 "$lamella" calibrate one.yaml tension.csv shear.yaml figures.csv --starts 1
 sed 's/to: 0.5 MPa/to: 0.4 MPa/' shear.yaml >other.yaml
 
-# data that no values repeat are told to be such
+# data that no values repeat are reported as such, scatter given or not
 sed 's/^\(1.*\), \(.*\), 0.6/\1, -\2, 0.6/' tension.csv >turned.csv
-expect 0 -o "the scenes do not repeat the data within their scatter" "$lamella" calibrate tension.yaml turned.csv --starts 1
+expect 3 -o "the scenes do not repeat the data within their scatter" -o "the worst point is turned.csv:12: F11 = 1.2, P11 (kPa) = -73.5" \
+  -o "rve.wall.C1: the best value is the lower bound, 0.02 MPa" "$lamella" calibrate tension.yaml turned.csv --starts 1
+printf 'F11, P11 (MPa)\n1.0, -0.019\n1.05, 0.5\n1.1, 1.0\n' >wild.csv
+expect 3 -o "the scenes miss the data by [0-9]* % of the largest value" -o "C1: the best value is the upper bound, 0.5 MPa" \
+  "$lamella" calibrate one.yaml wild.csv --starts 1
 
 refused() { # WORDS ARGUMENT...
   expect 2 "$lamella" calibrate "${@:2}" --starts 1
@@ -65,7 +69,7 @@ refused "name.csv: a figure 'stiffness (MPa)'; wanted is one of modulus" shear.y
 sed 's/^1.20/1.30/' tension.csv >far.csv
 refused "F11 from 1 to 1.3; with parameters in the middle of their bounds the scene's states reach from 1 to 1.2" tension.yaml far.csv
 sed 's/41, 0.001/41, 0/' figures.csv >certain.csv
-refused "a scatter of 0 is none" shear.yaml certain.csv
+refused "certain.csv:2: column scatter: 0: is not above 0" shear.yaml certain.csv
 printf '\xef\xbb\xbf' | cat - tension.csv >bom.csv
 expect 0 "$lamella" calibrate tension.yaml bom.csv --starts 1
 for title in "P11 (um):um" "P (kPa):P is a tensor: write a component, as P11" "status:a response has no number status" \

@@ -62,6 +62,23 @@ warm = Parameter("t", "2 degC", "20 degC", prior=("280 K", "3 K"))
 assert not warm.logarithmic and np.isclose(warm.value(0.5), 11) and np.isclose(warm.misfit(9.85), 1), warm
 raises(lamella.InputError, "is no mean between the bounds", lambda: Parameter("k", 1, 2, prior=(3, 1)))
 
+# data that no model can follow: misfit, a value on its bound, points that contradict each other, scatter given or not
+wild = {"F11": [1.02, 1.05, 1.1, 1.05], "P11 (MPa)": [-0.019, 0.5, 1.0, 0.1]}
+for scatter, words in ((None, "the scenes miss the data by"), (0.01, "the scenes do not repeat the data within their scatter")):
+    wrong = calibrate({"rve.wall.C1": ("0.02 MPa", "0.5 MPa")}, [Curve("tension.yaml", wild, scatter)], starts=1)
+    assert words in wrong.misfit and "the worst point is data, point 3: F11 = 1.1, P11 (MPa) = 1 (the model: -" in wrong.misfit, wrong
+    assert "rve.wall.C1: the best value is the upper bound, 0.5 MPa" in wrong.doubts[0], wrong
+    assert wrong.doubts[1] == ("data, point 2: F11 = 1.05, P11 (MPa) = 0.5, and data, point 4: F11 = 1.05, P11 (MPa) = 0.1: "
+                               "they contradict each other"), wrong
+    assert all(text in str(wrong) for text in (wrong.misfit, *wrong.doubts)) and wrong.told()["doubts"] == wrong.doubts
+# of many points one off, and a curve of another form
+x = np.linspace(1.04, 1.2, 30)
+y = np.interp(x, tension["F11"], tension["P11 (kPa)"])
+for change, words in ((0.3 * (x == x[6]), f"data, point 7: F11 = {x[6]:.6g}"), (0.05 * np.sin((x - 1) * 50), "the model's curve has another form")):
+    off = Curve("tension.yaml", {"F11": x, "P11 (kPa)": y + change * y.max()})
+    assert words in str(calibrate({"rve.wall.C1": ("0.02 MPa", "0.5 MPa")}, [off], starts=1).doubts), words
+assert not fit.misfit and not fit.doubts, fit
+
 # a model that does not reach is far off; mistakes
 far = Curve("tension.yaml", {"F11": [1.0, 1.5], "P11 (kPa)": [0, 1]}, 0.02)
 assert np.isnan(far.model(far.scene)).all()  # the scene has no undeformed state
@@ -73,8 +90,20 @@ for wrong, of, why in (({"rve.C5.x": (1, 2)}, curve, "no block C5"), ({"rve.wall
                        (bounds, few, "give the scatter"),
                        (bounds, far, "F11 from 1 to 1.5; with parameters in the middle of their bounds the scene's states reach from 1.02 to 1.2")):
     raises(lamella.InputError, why, lambda: calibrate(wrong, [of], starts=1))
-for text, why in (("F11\n1\n", "has 1 columns"), ("F11, P11 (MPa)\n", "has no numbers"), ("F11, P11 (MPa)\n1, x\n", "bad.csv:2: 1, x: wanted are 2"),
-                  ("F11, stress (MPa)\n1, 2\n", "stress"), ("F11, P11 (MPb)\n1, 2\n", "MPb"), ("F11, P11 (MPa)\n1, nan\n", "wanted are 2")):
+head = "F11, P11 (MPa)"
+for text, why in (("F11\n1\n", "bad.csv: has 1 column (F11); a curve has two"), (head, "has no numbers"), ("", "bad.csv: is empty; save"),
+                  (f"{head}\n1, x\n", "bad.csv:2: column P11 (MPa): x: is not a finite number"),
+                  (f"{head}\n1, nan\n", "nan: is not a finite number"), (f"{head}\n1, \n", "bad.csv:2: column P11 (MPa): is empty"),
+                  (f"{head}\n1\n", "bad.csv:2: 1: 1 cells under 2 titles; save"), (f"{head}\n1,05,0,5\n", "is the decimal sign a comma"),
+                  (f"{head}\n1, '1_0'\n", "is not a finite number"), (f'{head}\n1.0, "0,5"\n', "0,5: has a decimal comma"),
+                  ("F11; P11 (MPa)\n1,05;0,5\n", "bad.csv:1: columns are separated by semicolons"), (f"{head}\0\n", "is not text"),
+                  ("\ufeffF11\tP11 (MPa)\n1\t2\n", "bad.csv:1: columns are separated by tabs"), ("PK\3\4", "is a spreadsheet or archive"),
+                  ("F11, F11\n1, 2\n", "bad.csv:1: two columns are called F11"), ("1, 2\n1, 2\n", "a column '1'; its title is"),
+                  ("F11, stress (MPa)\n1, 2\n", "stress"), ("F11, P11 (MPb)\n1, 2\n", "MPb"), (f"{head}\n1, 0\n", "all values are 0"),
+                  (f"{head}, scatter\n1, 2, 1\n1, 2, 0\n", "bad.csv:3: a scatter is not above 0")):
     open("bad.csv", "w").write(text)
     raises(lamella.InputError, why, lambda: Curve("tension.yaml", "bad.csv"))
+for ends in "\r\n", "\r":  # of other systems; spreadsheets leave cells behind the last
+    open("ends.csv", "w", newline="").write(ends.join((head + ",", "1.05,0.5,,", "", "1.1,0.6,,", "")))
+    assert Curve("tension.yaml", "ends.csv").y.tolist() == [0.5e6, 0.6e6]
 PYTHON
