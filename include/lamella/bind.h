@@ -16,8 +16,12 @@
 
 LAM_C_BEGIN
 
-/* Starts MPI and PETSc where the process has not, and keeps errors (error.h). May be called again. */
+/* Starts MPI and PETSc where the process has not, for this rank alone: no call here waits for other ranks. Keeps errors
+   (error.h). May be called again. */
 LAM_EXPORT int LamBindStart(void);
+/* What LamBindStart has started in a job of several ranks: 0 nothing; 1 PETSc; 2 MPI, too, whose world is this rank. A
+   program that uses them with its other ranks must start them before. */
+LAM_EXPORT int LamBindStartedAlone(void);
 /* What an error code means: 'i' a mistake in an input, 'f' a file that cannot be read or written, 'm' no memory, else '
  * '. */
 LAM_EXPORT char LamBindErrorKind(int code);

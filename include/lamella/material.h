@@ -12,8 +12,11 @@
   F and P are 3 x 3, row-major (11 12 13 21 22 23 31 32 33); P is the first Piola-Kirchhoff stress, Pa. The tangent is
   dP_ij/dF_kl, 9 x 9: row ij, column kl, Pa. The cells' axis is direction 3. F is that of plane strain with any F33, of
   a database the F33 that it covers; derivatives of and with respect to out-of-plane shears are NaN. A scene has any F
-  and all derivatives after LamMaterialSetOutOfPlane, for three-dimensional bodies. Needs PetscInitialize;
-  LamErrorMessage (error.h) returns the text of an error.
+  and all derivatives after LamMaterialSetOutOfPlane, for three-dimensional bodies. LamErrorMessage (error.h) returns the
+  text of an error.
+
+  A material belongs to its rank: no call waits for other ranks. Where the program has started neither PETSc nor MPI, the
+  first material starts them for this rank alone; a program that uses them with its other ranks starts them before.
 */
 #ifndef LAMELLA_MATERIAL_H
 #define LAMELLA_MATERIAL_H

@@ -4,6 +4,7 @@ The functions are those of include/lamella/bind.h, which is read as it is.
 """
 import os
 import re
+import sys
 import threading
 from collections.abc import Iterator
 from functools import cache
@@ -59,10 +60,28 @@ def check(code: int) -> None:
 _one_at_a_time = threading.RLock()  # PETSc is not made for threads; again: memory is collected during a call
 
 
+class _Refuse:
+    """Finds no module. petsc4py, and mpi4py where MPI was not running, would take what lamella has started for this rank
+    alone for the world of the job."""
+
+    def __init__(self, modules: list[str]) -> None:
+        self.modules = modules
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> None:
+        if name in self.modules:
+            package = name.split(".")[0]
+            raise ImportError(f"import {package} before lamella's first scene or RVE, on every rank: this rank has used "
+                              f"lamella, which has started {'PETSc' if package == 'petsc4py' else 'MPI'} for it alone",
+                              name=name)
+
+
 @cache
 def _start() -> None:
     """Starts MPI and PETSc where the process has not: before the first call, since files and pictures need neither."""
     check(library.LamBindStart())
+    alone = library.LamBindStartedAlone()
+    if alone:
+        sys.meta_path.insert(0, _Refuse(["petsc4py", "petsc4py.lib"] + ["mpi4py.MPI"] * (alone == 2)))
 
 
 def call(function: Any, *arguments: Any) -> None:

@@ -2,6 +2,7 @@
 #include "plan.h"
 #include "query_source.h"
 #include "rve_run.h"
+#include "start.h"
 #include <lamella/bind.h>
 #include <lamella/error.h>
 #include <math.h>
@@ -10,33 +11,16 @@
 
 #define LOAD 11 /* numbers of a load: F, turgor, cohesion */
 
-#define SESSION_DIRS "OMPI_MCA_orte_create_session_dirs"
-
-static PetscErrorCode Start(void)
-{
-  PetscBool without = PETSC_FALSE; /* session directories, of which processes remove each other's as they end */
-
-  PetscFunctionBeginUser;
-  if (PetscInitializeCalled) PetscFunctionReturn(0);
-  if (!getenv("OMPI_COMM_WORLD_SIZE") && !getenv("PMIX_RANK") && !getenv("PMI_RANK")) { /* no other ranks to look for */
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-    setenv("OMPI_MCA_pml", "ob1", 0);
-    without = (PetscBool)!getenv(SESSION_DIRS);
-    if (without) setenv(SESSION_DIRS, "false", 0);
-  }
-  setenv("HWLOC_HIDE_ERRORS", "2", 0);
-  PetscCall(PetscOptionsSetValue(NULL, "-no_signal_handler", "true")); /* signals are the program's */
-  PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED;                   /* a host's threads may solve, one at a time */
-  PetscCall(PetscInitializeNoArguments());
-  if (without) unsetenv(SESSION_DIRS); /* an mpirun that this process starts needs them */
-  PetscFunctionReturn(0);
-}
-
 int LamBindStart(void)
 {
   const PetscErrorCode kept = LamErrorsKeep();
 
-  return kept ? (int)kept : (int)Start();
+  return kept ? (int)kept : (int)LamStartAlone();
+}
+
+int LamBindStartedAlone(void)
+{
+  return (int)LamStartedAlone();
 }
 
 char LamBindErrorKind(int code)

@@ -5,6 +5,7 @@
 #include "query_source.h"
 #include "mesh_choice.h"
 #include "rounding.h"
+#include "start.h"
 #include <math.h>
 
 struct LamMaterial_s {
@@ -81,6 +82,7 @@ PetscErrorCode LamMaterialCreateFromScene(const char path[], int points, LamMate
   *material = NULL;
   PetscCheck(points >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%d material points: 0 or more are wanted",
              points);
+  PetscCall(LamStartAlone());
   PetscCall(PetscNew(material));
   (*material)->points = points;
   ierr = ConnectScene(path, *material);
@@ -93,6 +95,7 @@ PetscErrorCode LamMaterialCreateFromDatabase(const char path[], LamMaterial *mat
   PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
+  PetscCall(LamStartAlone());
   PetscCall(PetscNew(material));
   ierr = ConnectDatabase(path, *material);
   if (ierr) (void)LamMaterialDestroy(material);
