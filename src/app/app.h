@@ -77,6 +77,8 @@ PetscErrorCode LamProgramVisit(LamUsageVisitor visit, void *ctx);
 /* ---- runtime.c ---- */
 /* Call first: sets up streams, signals and the handler that stores the message of an error. */
 PetscErrorCode LamRuntimeBegin(void);
+/* Reports the error `code` on stderr; *status is its exit status. */
+void LamRuntimeReport(PetscErrorCode code, int *status);
 /* Call last: reports the error `code`, once among all ranks; *status is the exit status. */
 void LamRuntimeEnd(PetscErrorCode code, int *status);
 /* Whether the command may run under mpirun; before it starts MPI. The launcher provides the ranks. */

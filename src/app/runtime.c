@@ -48,12 +48,13 @@ static int StatusOf(PetscErrorCode code)
   }
 }
 
-static void ReportError(PetscErrorCode code)
+void LamRuntimeReport(PetscErrorCode code, int *status)
 {
   const char *general = NULL;
 
+  *status = StatusOf(code);
   fflush(stdout);
-  if (StatusOf(code) != LAM_EXIT_FAULT) {
+  if (*status != LAM_EXIT_FAULT) {
     fprintf(stderr, "lamella: %s\n", LamErrorMessage());
     return;
   }
@@ -157,11 +158,11 @@ static void AgreeAtEnd(PetscErrorCode code, int *status)
   mine[1] = own ? size - rank : 0;
   MPI_Iallreduce(mine, all, 2, MPI_INT, MPI_MAX, EndComm, &request);
   if (!AwaitOthers(&request, own ? OWN_ERROR_PATIENCE : code ? SHARED_ERROR_PATIENCE : -1)) {
-    if (own) ReportError(code);
+    if (own) LamRuntimeReport(code, status);
     fprintf(stderr, "lamella: rank %d ends the job\n", rank);
     MPI_Abort(EndComm, *status);
   }
-  if (own && all[1] == mine[1]) ReportError(code);
+  if (own && all[1] == mine[1]) LamRuntimeReport(code, status);
   *status = all[0];
   (void)LamStopShareEnd();
   MPI_Comm_free(&EndComm);
@@ -187,7 +188,7 @@ void LamRuntimeEnd(PetscErrorCode code, int *status)
   if (EndComm != MPI_COMM_NULL)
     AgreeAtEnd(code, status);
   else if (code)
-    ReportError(code);
+    LamRuntimeReport(code, status);
   if (PetscInitializeCalled && !code) (void)WarnOfUnusedOptions();
   if (PetscInitializeCalled && PetscFinalize()) *status = PetscMax(*status, LAM_EXIT_FAULT);
   if (!fflush(stdout) && !ferror(stdout)) return;

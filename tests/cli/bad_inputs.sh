@@ -1,12 +1,13 @@
 # Inputs that are wrong, as a newcomer makes them: the exit status that stands here, and one message that says what is
 # wrong, where, and what would be right; what is accepted and probably a mistake is warned of. All mistakes of scenes are
-# in tests/scenes/bad.txt (test_scene_bad); here are the usual ones of all commands, and that the words arrive.
+# in tests/scenes/bad.txt (test_scene_bad); here are the usual ones of all commands, and that the words arrive. Most are
+# tried in one process.
 . "$(dirname "$0")/common.sh"
-count=0
+count=0 program=served
 
 # bad STATUS WORDS COMMAND...: that exit status, the words (of grep) once on stderr, nothing on stdout
 bad() {
-  expect "$1" "$lamella" "${@:3}" </dev/null
+  expect "$1" $program "${@:3}"
   [ "$(grep -c "^lamella\( [a-z0-9]*\)\?: \(.*: \)\?$2" err.txt)" = 1 ] || fail "not once \"$2\" from: ${*:3}: $(cat err.txt)"
   [ -s out.txt ] && fail "writes to stdout: ${*:3}: $(cat out.txt)"
   count=$((count + 1))
@@ -25,7 +26,7 @@ wrong() {
 # warned SCENE EDIT WORDS: `check` warns of it
 warned() {
   edited "$1" "$2"
-  expect 0 -o "^warning  *bad.yaml:$3" "$lamella" check bad.yaml
+  expect 0 -o "^warning  *bad.yaml:$3" served check bad.yaml
   count=$((count + 1))
 }
 
@@ -64,7 +65,7 @@ YAML
 sed '$a\  regions: [{name: skin, where: y > 5, cell: {wall_thickness: 20 um}}]' fe2.yaml >skin.yaml
 sed '$a\  fields: {turgor: {table: turgor.csv, unit: MPa}}' fe2.yaml >field.yaml
 for name in rve fe2 process map build skin; do
-  expect 0 "$lamella" check $name.yaml --json
+  expect 0 served check $name.yaml --json
   grep -q '"warnings": \[\]' out.txt || fail "$name.yaml is not right: $(cat out.txt)"
 done
 
@@ -191,6 +192,12 @@ bad 1 '--shard 3/2: which part of how many is wanted, such as 1/4' build build.y
 bad 1 '-F "1 0 0": 3 numbers; 4 or 9 numbers are wanted' query db.h5 -F '1 0 0'
 bad 1 '-F "1,05 0 0 1": 5 numbers (the decimal sign is the point); 4 or 9' query db.h5 -F '1,05 0 0 1'
 bad 1 '-p "0.02": a stress with its unit is wanted, such as "0.02 MPa"' query db.h5 -F '1 0 0 1' -p 0.02
+
+# a process of its own says the same
+edited rve 's/75 um/75/'
+program=$lamella
+bad 2 'bad.yaml:3:19: rve.cell.apothem: 75: has no unit' check bad.yaml
+bad 1 'a file name is missing' rve
 
 # sealed bodies without a database: solved, with a note; rounding noise: 0 in the table
 edited fe2 's/mode: prescribed/mode: sealed/'
