@@ -13,6 +13,7 @@ import json
 import os
 import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -112,26 +113,36 @@ class Responses:
         raise KeyError(name)
 
 
-def scene_dict(scene: "str | os.PathLike[str] | dict[str, Any] | Scene") -> dict[str, Any]:
-    """A scene as nested dictionaries: of a path, of a text (with a line break in it), of a Scene, or a dictionary as it
-    is."""
-    if isinstance(scene, dict):
-        return scene
-    if isinstance(scene, Scene):
-        scene = scene.path if scene.text is None else scene.text + "\n"
+def parse_yaml(text: str) -> Any:
+    """What a text of YAML holds, with scalars as scenes have them (YAML 1.2): `on` is a name and 1e-3 a number, unlike
+    in PyYAML."""
     import yaml  # type: ignore[import]  # only where scenes are taken apart
 
     class Loader(yaml.SafeLoader):
-        """Scalars as scenes have them (YAML 1.2): `on` is a name and 1e-3 a number, unlike in PyYAML."""
         yaml_implicit_resolvers: dict[str, Any] = {}
 
     for tag, pattern in (("bool", "true|false"), ("int", "[-+]?(0|[1-9][0-9]*)"),
                          ("float", r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")):
         Loader.add_implicit_resolver(f"tag:yaml.org,2002:{tag}", re.compile(f"^({pattern})$"), None)
-    if isinstance(scene, str) and "\n" in scene:
-        return yaml.load(scene, Loader)
-    with open(scene, encoding="utf-8") as file:
-        return yaml.load(file, Loader)
+    return yaml.load(text, Loader)
+
+
+def scene_dict(scene: "str | os.PathLike[str] | dict[str, Any] | Scene") -> dict[str, Any]:
+    """A scene as nested dictionaries: of a path, of a text (with a line break in it), of a Scene, or a dictionary as it
+    is. InputError: it cannot be read; with file, line and column."""
+    if isinstance(scene, dict):
+        return scene
+    if isinstance(scene, Scene):
+        scene = scene.path if scene.text is None else scene.text + "\n"
+    is_text = isinstance(scene, str) and "\n" in scene
+    try:
+        found = parse_yaml(str(scene) if is_text else Path(scene).read_text(encoding="utf-8-sig"))
+    except Exception:  # of files, encodings and YAML
+        found = None
+    if not isinstance(found, dict):
+        Scene("scene", str(scene)) if is_text else Scene(scene)  # its message names the place
+        raise InputError(f"{'the scene' if is_text else scene}: is no YAML that can be read")
+    return found
 
 
 class Scene:

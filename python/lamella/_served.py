@@ -2,6 +2,7 @@
 import ctypes
 import signal
 import sys
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -19,15 +20,23 @@ def served(name: str, run: Callable[[], int | None]) -> int:
     except InputError as error:
         status, message = INPUT, str(error)
     except OSError as error:
-        status, message = FILES, str(error)
+        status, message = FILES, _words(error)
     except MemoryError:
         status, message = FAULT, "out of memory"
     except Error as error:
         status, message = FAULT, str(error)
     except KeyboardInterrupt:
         return INTERRUPTED
+    except Exception as error:  # a fault of the package: all else is an InputError
+        traceback.print_exc()
+        status, message = FAULT, f"internal error: {error!r}"
     print(f"{name}: {message}", file=sys.stderr)
     return status
+
+
+def _words(error: OSError) -> str:
+    """File and reason, without the number that Python's own messages have."""
+    return f"{error.filename}: {error.strerror}" if error.filename is not None and error.strerror else str(error)
 
 
 def progress(what: str) -> Callable[[int, int], None]:

@@ -30,9 +30,12 @@ class Result:
         try:
             self.file = h5py.File(path, "r")
         except OSError as error:
-            if not os.path.exists(path):
-                raise FileNotFoundError(f"{path}: No such file or directory") from None
-            raise InputError(f"{path}: cannot be read: {error}") from None
+            try:
+                open(path, "rb").close()
+            except OSError as why:
+                raise OSError(f"{path}: cannot be read: {why.strerror}") from None
+            what = f"is damaged or cut short: {error}" if h5py.is_hdf5(path) else "is not an HDF5 file"
+            raise InputError(f"{path}: {what}; give a file that lamella has written, such as OUT.h5 of -o OUT.h5") from None
         attributes = self.file.attrs
         if attributes.get("format", b"") not in (b"lamella", "lamella"):
             raise InputError(f"{path}: is not a file of Lamella")

@@ -40,7 +40,8 @@ json.dump(fit, open("curve.json", "w"))
 page = lamella.plot.calibration("curve.json", title=False)
 assert len(page.axes) == 1 and np.allclose(np.ptp(page.axes[0].containers[0][2][0].get_segments()[1][:, 1]), 2 * 1.96 * 0.5)
 page.save("curve.svg")
-for broken, why in (({"lamella_calibration": 1}, "it lacks a part"), (fit | {"experiments": [{"x": "F11"}]}, "'data'")):
+for broken, why in (({"lamella_calibration": 1}, "is not of lamella calibrate: chi2 is missing"),
+                    (fit | {"experiments": [{"x": "F11"}]}, "or damaged: data is missing")):
     json.dump(broken, open("broken.json", "w"))
     raises(lamella.InputError, why, lambda: lamella.plot.draw("broken.json"))
 PYTHON
@@ -49,3 +50,14 @@ PYTHON
 expect 0 "$lamella" plot fit.json --dpi 40
 [ -s fit.png ] || fail "no picture"
 expect 2 -e "a fit is drawn as a whole" "$lamella" plot fit.json --state 1
+
+# files that are no results
+tissue </dev/null >scene.yaml
+printf 'F11, P11 (MPa)\n1, 2\n' >data.csv
+head -c 200 /dev/urandom >bytes.h5
+mkdir folder
+for case in "2 scene.yaml:is a scene; plot draws" "2 data.csv:is a CSV file; plot draws" "2 bytes.h5:is not an HDF5 file; give" \
+  "4 folder:cannot be read: Is a directory" "4 none.json:No such file or directory" "4 none.h5:cannot be read: No such file"; do
+  file=${case%%:*}
+  expect "${case%% *}" -e "^lamella: ${file#* }: ${case#*:}" "$lamella" plot "${file#* }"
+done

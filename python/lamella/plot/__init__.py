@@ -13,6 +13,7 @@
     x, y    limits of the axes of charts, in the units that are shown
 A Page is a matplotlib Figure with `save`; a notebook shows it as it is.
 """
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -28,7 +29,11 @@ _TEXTS = {"tradeoff": ("work_precision", "a work-precision diagram"), "cells": (
           "uncertainty": ("bands", "what samples tell"),
           "sensitivity": ("sensitivity", "what a study of sensitivity tells")}
 _KEYS = {"lamella_tissue": "cells", "lamella_realisations": "realisations", "lamella_calibration": "calibration",
-         "lamella_uncertainty": "uncertainty", "lamella_sensitivity": "sensitivity"}  #: texts that files of these kinds have
+         "lamella_uncertainty": "uncertainty", "lamella_sensitivity": "sensitivity",
+         '"settings"': "tradeoff"}  #: texts that files of these kinds have
+_SCENE = re.compile(r"^(version|rve) *:", re.MULTILINE)
+_DRAWN = ("plot draws the HDF5 files that rve, fe2, process, map (-o OUT.h5) and build (-d DB.h5) write, and the JSON files of "
+          "tissue, tradeoff, calibrate, sensitivity, --realisations and --uncertainty")
 _OPTIONS = {"title", "size", "range", "x", "y"}
 _CHOICES = {"state", "field", "strip", "forces", "film", "map", "angle", "suction", "turgor", "accuracy"}
 
@@ -75,7 +80,7 @@ def _page(kind, path, options, page):
         if module is None or kind not in (None, source.kind):
             raise InputError(f"{path}: is of kind \"{source.kind}\"; " +
                              (f"lamella.plot.{kind} draws files of {kind}" if module else
-                              "plot draws rve, fe2, database, map and process files"))
+                              _DRAWN))
         if source.kind != "database":
             import_module(".tables", __name__).refuse(path, options)
         for name, kinds in (("strip", ("rve", "fe2", "process")), ("forces", ("rve",)),
@@ -87,12 +92,20 @@ def _page(kind, path, options, page):
 
 
 def _kind_of_text(path):
-    """tradeoff, or one of _KEYS, of a file that is no HDF5; None: it may be one."""
-    if Path(path).suffix not in (".json", ".yaml", ".yml"):
+    """One of _KEYS of a file that is no HDF5; None: it may be one."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in (".json", ".yaml", ".yml", ".csv"):
         return None
-    with open(path, encoding="utf-8", errors="replace") as file:
-        text = file.read()
-    return next((kind for key, kind in _KEYS.items() if key in text), "tradeoff")
+    try:
+        text = Path(path).read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise OSError(f"{path}: {error.strerror}") from None
+    if suffix == ".csv":
+        raise InputError(f"{path}: is a CSV file; {_DRAWN}")
+    kind = next((kind for key, kind in _KEYS.items() if key in text), None)
+    if kind is None:
+        raise InputError(f"{path}: is {'a scene' if _SCENE.search(text) else 'no text file that lamella writes'}; {_DRAWN}")
+    return kind
 
 
 def draw(path, **options):

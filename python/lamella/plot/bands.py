@@ -1,7 +1,6 @@
 """Bands of samples (`lamella rve` and `lamella process --uncertainty`): the interval that holds 95 % of them, their
 median, and what the scene's own values give; figures of a test; and what happens first in which share of the samples.
 """
-import json
 
 import numpy as np
 
@@ -9,7 +8,9 @@ from .. import InputError
 from ..units import time_unit
 from .fits import ACROSS, GAP, HIGH, MARGIN, rows, titled
 from .page import DASHES, LINES, NOW, WIDTH, Page, legend, limits, settle, styled
+from .read import WRONG, object_of, unlike
 
+OF = "rve or process --uncertainty"
 MOST = 5  #: quantities that are drawn, beside what happens first: a page of two rows
 LEAST = 40  #: answers for an interval of 95 %
 NONE = 1e-6  #: MPa, kJ/m^3 or 1: the hysteresis of elastic tissue is 1e-13
@@ -118,20 +119,6 @@ def _chosen(told):
     return (wanted + [of for of in series if of not in wanted])[:MOST]
 
 
-def _read(path):
-    """The object of the file."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            told = json.load(file)
-        if told["lamella_uncertainty"] != 1 or not {"axis", "series", "figures", "first", "samples"} <= told.keys():
-            raise KeyError("it lacks a part")
-        return told
-    except OSError as error:
-        raise OSError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: is not of lamella rve or process --uncertainty: {error}") from None
-
-
 def _panels(page, told):
     """Functions of axes."""
     axis, panels = _Axis(told), []
@@ -153,7 +140,7 @@ def _panels(page, told):
 @styled
 def draw(path, options):
     """Up to five quantities, figures, and what happens first, of a file uncertainty.json."""
-    told = _read(path)
+    told = object_of(path, OF, {"axis", "series", "figures", "first", "samples", "parameters", "scene"})
     try:
         count = len(_panels(None, told))
         if not count:
@@ -166,9 +153,7 @@ def draw(path, options):
         top = MARGIN + page.head(f"{told['scene'].split('/')[-1]}: {told['samples']} samples of {keys} uncertain key" +
                               "s" * (keys > 1) + ("; bands hold 95 % of them" if wide else ""), options)
         rows(page, MARGIN, top, page.size[0] - 2 * MARGIN, page.size[1] - top - MARGIN, _panels(page, told), across)
-    except (ValueError, KeyError, TypeError, IndexError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path}: is not of lamella rve or process --uncertainty: {error}") from None
+    except WRONG as error:
+        raise unlike(path, OF, error) from None
     limits(page.axes[0], options)
     return settle(page)

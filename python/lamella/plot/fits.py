@@ -3,14 +3,13 @@
 Bars are 1.96 standard deviations of what was measured. Between its points a profile is drawn as a parabola would be:
 straight in the root of what it lies above its least.
 """
-import json
 import re
 
 import numpy as np
 from matplotlib.ticker import LogLocator, NullLocator
 
-from .. import InputError
 from .page import DARK, DASHES, EVENT, LINES, NOW, WIDTH, Page, legend, limits, number, settle, styled
+from .read import WRONG, object_of, unlike
 
 MARGIN, GAP, HIGH = 8, 10, 150  #: points
 ACROSS = 3  #: panels in a row
@@ -112,24 +111,10 @@ def _profile(page, axes, told, parameter):
     legend(page, axes)
 
 
-def _read(path):
-    """The object of the file."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            told = json.load(file)
-        if told["lamella_calibration"] != 1 or not NEEDED <= told.keys():
-            raise KeyError("it lacks a part")
-        return told
-    except OSError as error:
-        raise OSError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: is not of lamella calibrate: {error}") from None
-
-
 @styled
 def draw(path, options):
     """All curves, figures and profiles of a file fit.json of `lamella calibrate`."""
-    told = _read(path)
+    told = object_of(path, "calibrate", NEEDED)
     figures = [of for of in told["experiments"] if "figures" in of]
     data = [lambda axes, of=of: _curve(page, axes, of) for of in told["experiments"] if "figures" not in of]
     if figures:
@@ -147,9 +132,7 @@ def draw(path, options):
     try:
         rows(page, MARGIN, top, width, parts[0], data)
         rows(page, MARGIN, top + parts[0] + GAP, width, parts[1], profiles)
-    except (ValueError, KeyError, TypeError, IndexError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path}: is not of lamella calibrate: {error}") from None
+    except WRONG as error:
+        raise unlike(path, "calibrate", error) from None
     limits(page.axes[0], options)
     return settle(page)

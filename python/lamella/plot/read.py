@@ -6,6 +6,31 @@ import numpy as np
 from .. import InputError
 from ..results import Result
 
+WRONG = (ValueError, KeyError, TypeError, IndexError, AttributeError, AssertionError)  #: of an object that is read
+
+
+def object_of(path, command, needed=()):
+    """The object of a JSON file that a command has written, with the members that are needed."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            told = json.load(file)
+    except OSError as error:
+        raise OSError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise InputError(f"{path}: is not of lamella {command}: it is no JSON ({error})") from None
+    lacking = sorted(set(needed) - set(told)) if isinstance(told, dict) else ["its object"]
+    if lacking:
+        raise InputError(f"{path}: is not of lamella {command}: {lacking[0]} is missing")
+    return told
+
+
+def unlike(path, command, error):
+    """InputError of an object that is not as the command writes it; what was wrong with it is one of WRONG."""
+    if isinstance(error, InputError):
+        return error
+    why = f"{error.args[0]} is missing" if isinstance(error, KeyError) and error.args else error
+    return InputError(f"{path}: is not of lamella {command}, or damaged: {why}")
+
 
 class Source(Result):
     """A file that is drawn."""

@@ -3,7 +3,6 @@
 Bars are intervals of 95 % confidence, small points single realisations. Series lie beside each other at each number of
 cells so that their bars can be told apart.
 """
-import json
 
 import numpy as np
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
@@ -11,6 +10,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 from .. import InputError
 from .curves import MARKERS
 from .page import DASHES, EVENT, HEIGHT, LINES, WIDTH, Page, legend, limits, settle, styled
+from .read import WRONG, object_of, unlike
 
 MARGIN, GAP = 8, 10  #: points
 MOST = 4  #: states that are drawn: those between the first and the last one in equal steps
@@ -110,14 +110,11 @@ def _means(page, axes, told, series):
 
 def _read(path):
     """The object of the file, and its series."""
+    told = object_of(path, "rve --realisations")
     try:
-        with open(path, encoding="utf-8") as file:
-            told = json.load(file)
         return told, _all_series(told)
-    except OSError as error:
-        raise OSError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError, AssertionError) as error:
-        raise InputError(f"{path}: is not of lamella rve --realisations: {error}") from None
+    except WRONG as error:
+        raise unlike(path, "rve --realisations", error) from None
 
 
 @styled

@@ -3,13 +3,13 @@
 Dark bars are shares of the variance that a key makes alone, pale ones behind them with all its interactions; lines are
 intervals of 95 %. Keys are in one order, by the median of their totals.
 """
-import json
 import math
 
 import numpy as np
 
 from .. import InputError
 from .page import INK, LINES, SMALL, TEXT, WIDTH, Page, settle, styled
+from .read import WRONG, object_of, unlike
 
 MARGIN, GAP, HEAD, FOOT, LEGEND = 9, 12, 24, 22, 12  #: points; HEAD above, FOOT below a panel
 ROW, BAR = 13, 0.36  #: of a key; of a bar, over that
@@ -26,9 +26,8 @@ NOTE = "beside bars: elasticity, % of the figure for 1 % of the key"
 
 
 def _read(path):
+    told = object_of(path, "sensitivity")
     try:
-        with open(path, encoding="utf-8") as file:
-            told = json.load(file)
         figures = [f for f in told["figures"] if f["first"] is not None]
         mode = told["mode"]
         if mode and mode["indices"] and mode["indices"]["first"] is not None:
@@ -38,10 +37,8 @@ def _read(path):
             for name, shape in (("first", (len(keys),)), ("total_interval", (len(keys), 2))):
                 assert np.shape(figure[name]) == shape, name
         return told, figures, keys
-    except OSError as error:
-        raise OSError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError, AssertionError) as error:
-        raise InputError(f"{path}: is not of lamella sensitivity: {error}") from None
+    except WRONG as error:
+        raise unlike(path, "sensitivity", error) from None
 
 
 def _title(figure):

@@ -3,14 +3,13 @@
 A line joins the settings of one family; what failed is not there. A point has its setting beside it where there is
 room: the best settings first, then the planned one.
 """
-import json
 
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from .. import InputError
 from .page import INK, LINES, SMALL, WIDTH, Page, mark, near, occupy, settle, styled
+from .read import object_of
 
 PANEL, GAP, MARGIN, LEGEND, NOTES = 178, 14, 8, 34, 70  #: points
 LABEL = 6.0
@@ -108,14 +107,8 @@ def _panel(page, axes, data, kind, label, scale, looks):
 @styled
 def draw(path, options):
     """The diagram of a file tradeoff.json that `lamella tradeoff -o` has written."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            data = json.load(file)
-        settings = data["settings"]
-    except OSError as error:
-        raise OSError(f"{path}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: is not of lamella tradeoff: {error}") from None
+    data = object_of(path, "tradeoff", {"settings"})
+    settings = data["settings"]
     kinds = [kind for kind in KINDS if _points(settings, kind, 1, 1e-300)]
     looks = {}
     for s in settings:

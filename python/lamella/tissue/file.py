@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from .. import InputError, quantity, scene_dict
+from .. import InputError, quantity, parse_yaml
 from . import geometry
 
 VERSION = 1
@@ -212,7 +212,7 @@ def _object(path: str | os.PathLike[str]) -> dict[str, Any]:
     except ValueError:
         import yaml  # type: ignore[import]
         try:
-            told = scene_dict(content + "\n")
+            told = parse_yaml(content)
         except yaml.YAMLError as error:
             raise InputError(f"{path}: is neither JSON nor YAML: {' '.join(str(error).split())}") from None
     if not isinstance(told, dict) or "lamella_tissue" not in told:
