@@ -225,8 +225,9 @@ static void RigidMotions(LamMacro macro, const PetscReal normal[2], const PetscR
   motion[2] = macro->axisymmetric ? 0 : normal[1] * X[0] - normal[0] * X[1];
 }
 
-/* Gram matrix of the rigid motions at all constraints; the free component of a grip still restrains the rotation. */
-static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
+/* Gram matrix of the rigid motions at all constraints of a part of the body. The component of a grip that is free, as
+   `held` [border] says, still restrains the rotation. */
+static PetscErrorCode RigidGram(LamMacro macro, PetscInt part, const PetscBool held[], PetscReal gram[9])
 {
   PetscReal border[2 * LAM_MAX_BOUNDARIES + 1][3] = {{0}}; /* count, sum, sum of squares of the rotation */
 
@@ -234,12 +235,13 @@ static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
   PetscCall(PetscArrayzero(gram, 9));
   for (PetscInt k = 0; k < macro->constraint_count; k++) {
     const LamConstraint *constraint = &macro->constraints[k];
+    const PetscInt b = constraint->border, point = constraint->point - macro->mesh_start;
     PetscReal motion[3];
-    RigidMotions(macro, constraint->normal, &macro->position[macro->dim * (constraint->point - macro->mesh_start)],
-                 motion);
-    for (int m = 0; m < 9 && constraint->border < 0; m++) gram[m] += motion[m / 3] * motion[m % 3];
-    for (int power = 0; power < 3 && constraint->border >= 0; power++)
-      border[constraint->border][power] += PetscPowRealInt(motion[2], power);
+
+    if (macro->part[point] != part) continue;
+    RigidMotions(macro, constraint->normal, &macro->position[macro->dim * point], motion);
+    for (int m = 0; m < 9 && (b < 0 || held[b]); m++) gram[m] += motion[m / 3] * motion[m % 3];
+    for (int power = 0; power < 3 && b >= 0 && !held[b]; power++) border[b][power] += PetscPowRealInt(motion[2], power);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, 9, MPIU_REAL, MPIU_SUM, macro->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, border, 3 * (2 * LAM_MAX_BOUNDARIES + 1), MPIU_REAL, MPIU_SUM, macro->comm));
@@ -249,21 +251,55 @@ static PetscErrorCode RigidGram(LamMacro macro, PetscReal gram[9])
   PetscFunctionReturn(0);
 }
 
-/* Orthonormal basis of the rigid motions restrained by the constraints. */
-static PetscErrorCode HeldMotions(LamMacro macro, PetscReal basis[3][3], PetscInt *rank)
+/* Orthonormal basis of the rigid motions of a part that the constraints restrain. */
+static PetscErrorCode HeldMotions(LamMacro macro, PetscInt part, const PetscBool held[], PetscReal basis[3][3],
+                                  PetscInt *rank)
 {
   const PetscReal tiny = 1e-10; /* relative to numbers of order one and more: lengths are in edges of the box */
   PetscReal gram[9], eigenvalue[3], work[32];
   PetscBLASInt n = 3, size = 32, info;
 
   PetscFunctionBeginUser;
-  PetscCall(RigidGram(macro, gram));
+  PetscCall(RigidGram(macro, part, held, gram));
   LAPACKsyev_("V", "U", &n, gram, &n, eigenvalue, work, &size, &info);
   PetscCheck(!info, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK's syev: info %d", (int)info);
   *rank = 0;
   for (int k = 0; k < 3; k++) {
     if (eigenvalue[k] > tiny) PetscCall(PetscArraycpy(basis[(*rank)++], &gram[3 * k], 3));
   }
+  PetscFunctionReturn(0);
+}
+
+/* A part that the displacements leave free, or -1. A grip holds a part also where its component is free, if it holds
+   another part that is held elsewhere. */
+static PetscErrorCode FindLoose(LamMacro macro, PetscInt *loose)
+{
+  PetscBool held[2 * LAM_MAX_BOUNDARIES + 1] = {PETSC_FALSE}, changed = PETSC_TRUE, *done;
+  PetscReal basis[3][3];
+  PetscInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(macro->part_count, &done));
+  while (changed) {
+    changed = PETSC_FALSE;
+    *loose = -1;
+    for (PetscInt part = 0; part < macro->part_count; part++) {
+      if (done[part]) continue;
+      PetscCall(HeldMotions(macro, part, held, basis, &rank));
+      if (rank == (macro->axisymmetric ? 1 : 3)) {
+        done[part] = changed = PETSC_TRUE;
+        for (PetscInt k = 0; k < macro->constraint_count; k++) {
+          const LamConstraint *constraint = &macro->constraints[k];
+          if (constraint->border >= 0 && macro->part[constraint->point - macro->mesh_start] == part)
+            held[constraint->border] = PETSC_TRUE;
+        }
+        PetscCallMPI(
+            MPI_Allreduce(MPI_IN_PLACE, held, PETSC_STATIC_ARRAY_LENGTH(held), MPIU_BOOL, MPI_LOR, macro->comm));
+      } else if (*loose < 0)
+        *loose = part;
+    }
+  }
+  PetscCall(PetscFree(done));
   PetscFunctionReturn(0);
 }
 
@@ -275,8 +311,8 @@ typedef struct {
   PetscReal X[LAM_MACRO_DIM];
 } Place;
 
-/* The owned node farthest from a place; among equal ones that of the lowest number. */
-static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
+/* The owned node of a part that is farthest from a place; among equal ones that of the lowest number. */
+static PetscErrorCode FindNode(LamMacro macro, PetscInt part, const Place *from, Place *found)
 {
   PetscReal farthest = -1, best;
   double lowest = INFINITY;
@@ -286,6 +322,7 @@ static PetscErrorCode FindNode(LamMacro macro, const Place *from, Place *found)
     for (PetscInt k = 0; k < macro->node_count; k++) {
       const LamMacroNode *node = &macro->nodes[k];
       PetscReal distance = 0;
+      if (macro->part[node->point - macro->mesh_start] != part) continue;
       for (PetscInt i = 0; i < macro->dim; i++) distance += PetscSqr(node->X[i] - from->X[i]);
       if (pass == 0) farthest = PetscMax(farthest, distance);
       if (pass == 0 || distance < best * (1 - 1e-9) || (double)node->number >= lowest) continue;
@@ -335,12 +372,12 @@ static int CompareConstraints(const void *a, const void *b)
   return (one > other) - (one < other);
 }
 
+/* A distant point from which the lower left of the body is farthest. */
+static const Place far = {.X = {1e3, 1e3}};
+
 PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
 {
-  const Place far = {.X = {1e3, 1e3}}; /* a distant point from which the lower left of the body is farthest */
-  PetscReal basis[3][3];
-  PetscInt rank = 0;
-  Place one, other;
+  const PetscBool held[2 * LAM_MAX_BOUNDARIES + 1] = {PETSC_FALSE};
 
   PetscFunctionBeginUser;
   PetscCheck(macro->dim == 2, macro->comm, PETSC_ERR_SUP, "rigid motions are those of the plane");
@@ -348,35 +385,46 @@ PetscErrorCode LamMacroHoldRigidMotions(LamMacro macro)
   macro->obstacle_count = macro->obstacle_node_count = 0;
   PetscCall(LamMacroBordersCreate(macro, PETSC_FALSE));
   PetscCall(AddNodes(macro, PETSC_TRUE));
-  PetscCall(HeldMotions(macro, basis, &rank));
-  PetscCall(FindNode(macro, &far, &one));
-  PetscCall(FindNode(macro, &one, &other));
-  const PetscReal line[2] = {other.X[0] - one.X[0], other.X[1] - one.X[1]}, length = hypot(line[0], line[1]);
-  const PetscReal directions[4][2] = {
-      {1, 0}, {0, 1}, {-line[1] / length, line[0] / length}, {line[0] / length, line[1] / length}};
-  /* the other node stays on its line with the first one, so a swelling body does not rotate */
-  for (int k = 0; k < 4; k++) PetscCall(HoldNode(macro, k < 2 ? &one : &other, directions[k], basis, &rank));
+  for (PetscInt part = 0; part < macro->part_count; part++) {
+    PetscReal basis[3][3];
+    PetscInt rank = 0;
+    Place one, other;
+
+    PetscCall(HeldMotions(macro, part, held, basis, &rank));
+    PetscCall(FindNode(macro, part, &far, &one));
+    PetscCall(FindNode(macro, part, &one, &other));
+    const PetscReal line[2] = {other.X[0] - one.X[0], other.X[1] - one.X[1]}, length = hypot(line[0], line[1]);
+    const PetscReal directions[4][2] = {
+        {1, 0}, {0, 1}, {-line[1] / length, line[0] / length}, {line[0] / length, line[1] / length}};
+    /* the other node stays on its line with the first one, so a swelling body does not rotate */
+    for (int k = 0; k < 4; k++) PetscCall(HoldNode(macro, k < 2 ? &one : &other, directions[k], basis, &rank));
+  }
   qsort(macro->constraints, (size_t)macro->constraint_count, sizeof(*macro->constraints), CompareConstraints);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode LamMacroHoldBoundaries(LamMacro macro)
 {
-  PetscReal basis[3][3];
-  PetscInt rank;
+  char what[LAM_PLACE_TEXT] = "the body";
+  PetscInt loose = -1;
+  Place place;
 
   PetscFunctionBeginUser;
   macro->loaded = PETSC_TRUE;
   PetscCall(LamMacroBordersCreate(macro, PETSC_TRUE));
   PetscCall(AddNodes(macro, PETSC_FALSE));
-  PetscCall(HeldMotions(macro, basis, &rank));
-  LamMacroRequire(rank == (macro->axisymmetric ? 1 : 3), macro, &macro->scene->macro.boundary[0].place,
-                  "macro.boundary: %s",
+  PetscCall(FindLoose(macro, &loose));
+  if (loose >= 0 && macro->part_count > 1) {
+    PetscCall(FindNode(macro, loose, &far, &place));
+    snprintf(what, sizeof(what), "one of %d separate parts of the body, that at (%g, %g) in the mesh's unit,",
+             (int)macro->part_count, (double)place.X[0], (double)place.X[1]);
+  }
+  LamMacroRequire(loose < 0, macro, &macro->scene->macro.boundary[0].place,
+                  "macro.boundary: the displacements leave %s free to move %s", what,
                   macro->axisymmetric
-                      ? "the displacements leave the body free to move along X2, its axis; prescribe that component "
-                        "somewhere (plates and indenters do not count)"
-                      : "the displacements leave the body free to move or turn as a whole; prescribe both "
-                        "components somewhere, and enough to prevent rotation (plates and indenters do not count)");
+                      ? "along X2, its axis; prescribe that component somewhere (plates and indenters do not count)"
+                      : "or turn as a whole; prescribe both components somewhere, and enough to prevent rotation "
+                        "(plates and indenters do not count)");
   PetscCall(LamMacroBordersStart(macro));
   PetscCall(LamMacroObstaclesCreate(macro));
   PetscFunctionReturn(0);

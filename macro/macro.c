@@ -100,11 +100,11 @@ PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[])
+PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], unsigned int groups[])
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(X, macro->place, macro->dim * macro->point_count));
-  for (PetscInt p = 0; p < macro->point_count; p++) group[p] = macro->elements[macro->point_element[p]].group;
+  for (PetscInt p = 0; p < macro->point_count; p++) groups[p] = macro->elements[macro->point_element[p]].groups;
   PetscFunctionReturn(0);
 }
 

@@ -2,7 +2,7 @@
   Private parts of the macroscale solver.
 
     mesh.c      distribution, numbering, named sets, geometry of elements
-    mesh_box.c, mesh_disc.c, mesh_gmsh.c   mesh generation and mesh files
+    mesh_box.c, mesh_disc.c, mesh_gmsh.c, mesh_gmsh_read.c   mesh generation and mesh files
     element.c, facet.c   shape functions and Gauss points of elements, geometry of the boundary facets
     boundary.c  prescribed displacements
     traction.c  dead and follower tractions
@@ -56,7 +56,7 @@ typedef struct {
   PetscInt number;   /* in the undistributed mesh, independent of the number of ranks */
   PetscInt first;    /* first material point; its points are contiguous */
   PetscInt gradient; /* offset of its dN/dX in LamMacro.gradient: [points][nodes][dim]; over dim: of its N/X1 in hoop */
-  PetscInt group;    /* named region; -1: none */
+  unsigned int groups; /* bit k: named region k */
 } LamMacroElement;
 
 /* A node that this rank owns. */
@@ -151,10 +151,10 @@ typedef struct {
 /* A node that may touch obstacles; stored on the rank that owns it. */
 typedef struct {
   PetscInt local, point;
-  unsigned int obstacles; /* bit o */
-  PetscInt constraint;    /* its prescribed direction; -1: none */
-  PetscBool active;       /* in contact in the last residual */
-  PetscBool accepted;     /* in contact in the last converged state */
+  unsigned int obstacles;       /* bit o */
+  PetscInt constraint;          /* its prescribed direction; -1: none */
+  PetscBool active;             /* in contact in the last residual */
+  PetscBool accepted;           /* in contact in the last converged state */
   PetscInt slip, accepted_slip; /* sign of the force of friction where it slips, likewise; 0: it does not */
 } LamObstacleNode;
 
@@ -251,6 +251,8 @@ struct LamMacro_s {
   LamMacroElement *elements;
   PetscInt mesh_start, mesh_end; /* mesh points (cells, faces, edges, vertices) of this rank; most are nodes */
   PetscInt *node_number;         /* [mesh points] in the undistributed mesh; -1: no node */
+  PetscInt part_count;           /* of the body, which share no node */
+  PetscInt *part;                /* [mesh points] the part that it is in */
   PetscReal *position;           /* [mesh points][dim] reference position of the node */
   PetscInt node_count;
   LamMacroNode *nodes; /* owned by this rank, in the order of their mesh points */
@@ -296,8 +298,8 @@ struct LamMacro_s {
   PetscBool relaxes;      /* walls have a memory, of accepted states */
   PetscReal time, accepted_time; /* s, of the present state and of the last accepted one */
   PetscReal duration;            /* of loads: between them; before LamMacroBalance for ever */
-  PetscReal force_scale;  /* largest norm of the element forces in this series of Newton iterations */
-  PetscReal force_floor;  /* lower bound of force_scale where `lenient` */
+  PetscReal force_scale;         /* largest norm of the element forces in this series of Newton iterations */
+  PetscReal force_floor;         /* lower bound of force_scale where `lenient` */
   PetscReal history[64];
   char trouble[LAM_MESSAGE_LENGTH - 64]; /* why the last evaluation failed; messages prefix how far it came */
 
@@ -311,11 +313,11 @@ struct LamMacro_s {
   LamObstacle obstacles[LAM_MAX_BOUNDARIES];
   PetscInt obstacle_node_count;
   LamObstacleNode *obstacle_nodes;
-  PetscBool lenient;         /* responses with small jumps: a small residual may remain */
-  PetscBool thorough;        /* at least one iteration, even if the first residual is small */
-  PetscBool fresh;           /* no residual evaluated yet in this series of iterations */
-  PetscInt pulled, released; /* nodes: in contact though pulled, most of all; to leave at the next residual; -1 */
-  PetscBool any_pulled;      /* on any rank */
+  PetscBool lenient;             /* responses with small jumps: a small residual may remain */
+  PetscBool thorough;            /* at least one iteration, even if the first residual is small */
+  PetscBool fresh;               /* no residual evaluated yet in this series of iterations */
+  PetscInt pulled, released;     /* nodes: in contact though pulled, most of all; to leave at the next residual; -1 */
+  PetscBool any_pulled;          /* on any rank */
   PetscBool any_regrip, regrips; /* nodes of a sealed body are to begin to slip or stick, on any rank; at the next
                                     residual they do */
   PetscReal violation; /* largest penetration or distance of nodes violating the contact conditions, last residual */

@@ -44,6 +44,36 @@ static PetscErrorCode NumberPoints(LamMacro macro, PetscInt **nodes, PetscInt **
   PetscFunctionReturn(0);
 }
 
+/* In the undistributed mesh: the part of the body that each point is in. Parts share no node. */
+static PetscErrorCode NumberParts(LamMacro macro, PetscInt *parts[])
+{
+  PetscInt start, end, elements, *part;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetChart(macro->dm, &start, &end));
+  PetscCall(DMPlexGetHeightStratum(macro->dm, 0, NULL, &elements));
+  PetscCall(PetscMalloc1(end - start, parts));
+  part = *parts; /* first another point of the part with a smaller number, or the point itself */
+  for (PetscInt p = 0; p < end - start; p++) part[p] = p;
+  for (PetscInt e = 0; e < elements; e++) {
+    PetscInt size, *closure = NULL;
+
+    PetscCall(DMPlexGetTransitiveClosure(macro->dm, e, PETSC_TRUE, &size, &closure));
+    for (PetscInt k = 1; k < size; k++) {
+      PetscInt one = e, other = closure[2 * k] - start;
+
+      while (part[one] != one) one = part[one] = part[part[one]];
+      while (part[other] != other) other = part[other] = part[part[other]];
+      part[PetscMax(one, other)] = PetscMin(one, other);
+    }
+    PetscCall(DMPlexRestoreTransitiveClosure(macro->dm, e, PETSC_TRUE, &size, &closure));
+  }
+  macro->part_count = 0;
+  for (PetscInt p = 0; p < end - start; p++) part[p] = part[p] == p ? macro->part_count++ : part[part[p]];
+  PetscCallMPI(MPI_Bcast(&macro->part_count, 1, MPIU_INT, 0, macro->comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamMacroListNodes(LamMacro macro)
 {
   PetscSection section;
@@ -93,7 +123,7 @@ static PetscErrorCode AddSet(LamMacro macro, DMLabel label, PetscInt value, cons
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, PetscInt value, const char name[])
+static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, const char name[])
 {
   PetscFunctionBeginUser;
   LamMacroRequire(macro->group_count < LAM_MACRO_GROUPS, macro, &macro->scene->macro.mesh_place,
@@ -102,8 +132,8 @@ static PetscErrorCode AddGroup(LamMacro macro, DMLabel label, PetscInt value, co
   PetscCall(PetscStrncpy(macro->group_name[macro->group_count], name, LAM_NAME_LENGTH));
   for (PetscInt e = 0; e < macro->element_count; e++) {
     PetscBool in;
-    PetscCall(DMLabelStratumHasPoint(label, value, macro->mesh_start + e, &in));
-    if (in) macro->elements[e].group = macro->group_count;
+    PetscCall(DMLabelStratumHasPoint(label, 1, macro->mesh_start + e, &in));
+    if (in) macro->elements[e].groups |= 1u << macro->group_count;
   }
   macro->group_count++;
   PetscFunctionReturn(0);
@@ -126,18 +156,7 @@ static PetscErrorCode AddSides(LamMacro macro, PetscInt count, const char *const
   PetscFunctionReturn(0);
 }
 
-/* Labels made by PETSc or in this file, i.e. not physical groups. */
-static PetscBool IsOwnLabel(const char name[])
-{
-  static const char *const own[] = {"depth", "celltype", "Cell Sets", "Face Sets", "Vertex Sets", OUTER};
-
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(own); k++) {
-    if (!strcmp(name, own[k])) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* Physical groups of a Gmsh file are labels of their names: of elements (regions), or of facets or points. */
+/* Adds the physical groups of a Gmsh file that have a part of the mesh. */
 static PetscErrorCode AddPhysicalGroups(LamMacro macro)
 {
   PetscInt labels;
@@ -145,28 +164,20 @@ static PetscErrorCode AddPhysicalGroups(LamMacro macro)
   PetscFunctionBeginUser;
   PetscCall(DMGetNumLabels(macro->dm, &labels));
   for (PetscInt k = 0; k < labels; k++) {
+    PetscBool region, set;
     const char *name;
     DMLabel label;
-    PetscInt value = -1, depth = -1;
+    PetscInt size;
 
     PetscCall(DMGetLabelName(macro->dm, k, &name));
-    if (IsOwnLabel(name)) continue;
+    PetscCall(PetscStrbeginswith(name, LAM_MESH_REGION, &region));
+    PetscCall(PetscStrbeginswith(name, LAM_MESH_SET, &set));
+    if (!region && !set) continue;
     PetscCall(DMGetLabelByNum(macro->dm, k, &label));
-    for (PetscInt p = macro->mesh_start; p < macro->mesh_end; p++) {
-      PetscInt d, has;
-      PetscCall(DMLabelGetValue(label, p, &has));
-      if (has < 0) continue;
-      value = has;
-      PetscCall(DMPlexGetPointDepth(macro->dm, p, &d));
-      depth = PetscMax(depth, d);
-    }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &depth, 1, MPIU_INT, MPI_MAX, macro->comm));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPIU_INT, MPI_MAX, macro->comm));
-    if (depth < 0) continue;
-    if (depth == macro->dim)
-      PetscCall(AddGroup(macro, label, value, name));
-    else
-      PetscCall(AddSet(macro, label, value, name));
+    PetscCall(DMLabelGetStratumSize(label, 1, &size));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &size, 1, MPIU_INT, MPI_MAX, macro->comm));
+    if (size && region) PetscCall(AddGroup(macro, label, name + strlen(LAM_MESH_REGION)));
+    if (size && set) PetscCall(AddSet(macro, label, 1, name + strlen(LAM_MESH_SET)));
   }
   PetscFunctionReturn(0);
 }
@@ -460,6 +471,7 @@ static PetscErrorCode Distribute(LamMacro macro)
 
   PetscFunctionBeginUser;
   PetscCall(NumberPoints(macro, &macro->node_number, &points));
+  PetscCall(NumberParts(macro, &macro->part));
   PetscCall(DMPlexDistribute(macro->dm, 0, &migration, &distributed));
   if (distributed) {
     PetscCall(DMDestroy(&macro->dm));
@@ -470,10 +482,10 @@ static PetscErrorCode Distribute(LamMacro macro)
   n = macro->mesh_end - macro->mesh_start;
   PetscCall(Migrate(migration, &macro->node_number, n));
   PetscCall(Migrate(migration, &points, n));
+  PetscCall(Migrate(migration, &macro->part, n));
   PetscCall(PetscSFDestroy(&migration));
   PetscCall(PetscMalloc1(macro->element_count, &macro->elements));
-  for (PetscInt e = 0; e < macro->element_count; e++)
-    macro->elements[e] = (LamMacroElement){.number = points[e], .group = -1};
+  for (PetscInt e = 0; e < macro->element_count; e++) macro->elements[e] = (LamMacroElement){.number = points[e]};
   PetscCall(PetscFree(points));
   PetscFunctionReturn(0);
 }
@@ -519,6 +531,7 @@ PetscErrorCode LamMacroMeshDestroy(LamMacro macro)
     PetscCall(PetscFree3(macro->kinds[k].value, macro->kinds[k].gradient, macro->kinds[k].weight));
   PetscCall(PetscFree(macro->elements));
   PetscCall(PetscFree(macro->node_number));
+  PetscCall(PetscFree(macro->part));
   PetscCall(PetscFree(macro->position));
   PetscCall(PetscFree(macro->nodes));
   PetscCall(PetscFree(macro->sets));

@@ -11,11 +11,10 @@
 PetscErrorCode LamMacroBoxCreate(MPI_Comm comm, const LamMacroSpec *spec, DM *dm);
 /* mesh_disc.c: a disc of radius 1 or a part of it about the origin, with named sides. */
 PetscErrorCode LamMacroDiscCreate(MPI_Comm comm, LamDiscPart part, const PetscInt elements[2], DM *dm);
-/* mesh_gmsh.c */
-/* `key`: "scene.yaml:6:16: macro.mesh.gmsh", for messages. */
+/* mesh_gmsh.c; `key`: "scene.yaml:6:16: macro.mesh.gmsh", for messages. Labels of its physical groups, all of stratum 1,
+   are called SET or REGION and the group's name: of points and curves, or of surfaces. */
+#define LAM_MESH_SET "set "
+#define LAM_MESH_REGION "region "
 PetscErrorCode LamMacroGmshCreate(MPI_Comm comm, const char key[], const char path[], DM *dm);
-/* Whether the file is safe to read for PETSc, which does not check it; `why`: reason if not. */
-#define LAM_GMSH_WHY 200
-PetscBool LamGmshCheck(const char path[], char why[LAM_GMSH_WHY]);
 
 #endif

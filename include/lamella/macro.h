@@ -104,10 +104,10 @@ LAM_EXPORT PetscErrorCode LamMacroSetUp(LamMacro macro);
 LAM_EXPORT PetscErrorCode LamMacroGetComm(LamMacro macro, MPI_Comm *comm);
 LAM_EXPORT PetscErrorCode LamMacroGetPointCount(LamMacro macro, PetscInt *points); /* material points on this rank */
 /*
-  Material points of this rank: X [point][2] reference positions in macro lengths; group [point] index of the mesh's
-  named region, -1: none. LamMacroGetGroups: names of these regions, the physical groups of elements of a Gmsh file.
+  Material points of this rank: X [point][2] reference positions in macro lengths; groups [point] the mesh's named
+  regions that it is in, bit k: region k. LamMacroGetGroups: names of these regions, the physical groups of elements of a Gmsh file.
 */
-LAM_EXPORT PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], PetscInt group[]);
+LAM_EXPORT PetscErrorCode LamMacroGetPlaces(LamMacro macro, PetscReal X[], unsigned int groups[]);
 LAM_EXPORT PetscErrorCode LamMacroGetGroups(LamMacro macro, PetscInt *count, const char (**names)[LAM_NAME_LENGTH]);
 /* Sets turgor at full inflation and cohesion per point, [point] each. Default: the scene's values. */
 LAM_EXPORT PetscErrorCode LamMacroSetPointTissue(LamMacro macro, const PetscReal turgor[], const PetscReal cohesion[]);

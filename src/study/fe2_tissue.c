@@ -87,7 +87,7 @@ static PetscErrorCode CheckRegions(MPI_Comm comm, const LamReporter *reporter, c
 
 /* Finds the last region that covers each point. X: [n][2] in mm. */
 static PetscErrorCode FindRegions(MPI_Comm comm, const LamReporter *reporter, LamMacro macro, const LamScene *scene,
-                                  PetscInt n, const PetscReal X[], const PetscInt groups[], Place places[])
+                                  PetscInt n, const PetscReal X[], const unsigned int groups[], Place places[])
 {
   PetscBool covered[LAM_MAX_REGIONS][2] = {{PETSC_FALSE}};
 
@@ -99,7 +99,7 @@ static PetscErrorCode FindRegions(MPI_Comm comm, const LamReporter *reporter, La
 
     if (!region->where) PetscCall(FindGroup(macro, scene, region, &group));
     for (PetscInt p = 0; p < n; p++) {
-      PetscReal inside = groups[p] == group;
+      PetscReal inside = group >= 0 && groups[p] >> group & 1;
 
       if (region->where) PetscCall(LamPlaceFieldEvaluate(region->where, &X[2 * p], &inside));
       if (inside == 0) continue;
@@ -179,7 +179,7 @@ static PetscErrorCode FindPlaces(MPI_Comm comm, const LamReporter *reporter, Lam
                                  PetscInt n, Place **places)
 {
   PetscReal *X;
-  PetscInt *groups;
+  unsigned int *groups;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, places));

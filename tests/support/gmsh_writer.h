@@ -12,7 +12,9 @@
 typedef enum {
   GMSH_QUADRILATERALS,
   GMSH_TRIANGLES,
-  GMSH_CURVED /* quadrilaterals whose nine nodes are mapped */
+  GMSH_CURVED, /* quadrilaterals whose nine nodes are mapped; from here on second-order elements */
+  GMSH_CURVED_TRIANGLES,
+  GMSH_CURVED_MIXED /* quadrilaterals of nine and eight nodes and triangles */
 } GmshElements;
 
 /* From (xi, eta) in the unit square, which X holds, to the place. */

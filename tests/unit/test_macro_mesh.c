@@ -1,5 +1,6 @@
 /* Claims about the meshes of the macroscale solver: discs, Gmsh files, and what holds bodies that are no box. */
 #include "support/gmsh_writer.h"
+#include "support/error_message.h"
 #include "support/macro_fixture.h"
 #include "macro_impl.h"
 #include <unistd.h>
@@ -93,6 +94,57 @@ MACRO_TEST(GmshIsAsGoodAsABox)
   assert_true(PetscAbsReal(FixtureReaction(fixture, "right")[0] - exact.P[0]) < 1e-11);
 }
 
+/* Second-order elements with curved edges inside the square: homogeneous deformation is exact. */
+TEST(CurvedElementsPassThePatchTest)
+{
+  for (GmshElements elements = GMSH_CURVED; elements <= GMSH_CURVED_MIXED; elements++) {
+    FIXTURE fixture;
+
+    FixtureScene(&fixture, 1, 1, 1, 1);
+    fixture.scene.macro.source = LAM_MESH_GMSH;
+    GmshWrite(fixture.scene.macro.gmsh, 3, 4, elements, GmshDistorted);
+    FixtureBoundary(&fixture, "left", 0, NAN);
+    FixtureBoundary(&fixture, "right", 0.2, NAN);
+    FixtureBoundary(&fixture, "bottom", NAN, 0);
+    FixtureBoundary(&fixture, "top", NAN, -0.1);
+    FixtureRun(&fixture, PETSC_COMM_WORLD, LAM_MACRO_DONE);
+    remove(fixture.scene.macro.gmsh);
+    const LamMacroFields *fields = FixtureFields(&fixture);
+    for (PetscInt k = 0; k < 9 * fields->element_count; k++)
+      assert_near(fields->F[k], ((PetscReal[]){1.2, 0, 0, 0, 0.9, 0, 0, 0, 1})[k % 9], 1e-12);
+  }
+}
+
+/* Of a quarter of a ring with radii 1 and 2. */
+static void QuarterRing(double X[2])
+{
+  const double radius = 1 + X[0], angle = 0.5 * PETSC_PI * X[1];
+
+  X[0] = radius * cos(angle);
+  X[1] = radius * sin(angle);
+}
+
+/* Second-order edges miss the area by O(h^4). */
+TEST(CurvedElementsHaveTheirArea)
+{
+  for (GmshElements elements = GMSH_CURVED; elements <= GMSH_CURVED_MIXED; elements++) {
+    PetscReal error[2];
+
+    for (int fine = 0; fine < 2; fine++) {
+      FIXTURE fixture;
+
+      FixtureScene(&fixture, 1, 1, 1, 1);
+      fixture.scene.macro.source = LAM_MESH_GMSH;
+      GmshWrite(fixture.scene.macro.gmsh, 4 << fine, 4 << fine, elements, QuarterRing);
+      FixtureBoundary(&fixture, "left", 0, 0);
+      FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+      remove(fixture.scene.macro.gmsh);
+      error[fine] = PetscAbsReal(Area(fixture.macro) - 0.75 * PETSC_PI);
+    }
+    assert_true(error[1] < 1e-5 && error[0] / error[1] > 14);
+  }
+}
+
 static const PetscReal ANGLE = 0.4;
 
 static void Turned(double X[2])
@@ -148,4 +200,89 @@ MACRO_TEST(LooseDiscIsRefused)
   FixtureDisc(fixture, LAM_DISC_WHOLE, 2, 2);
   FixtureBoundary(fixture, "rim", 0, NAN);
   FixtureRefused(fixture);
+}
+
+/* Two squares of one element, one above the other, a tenth apart: bottom and upper side of the one and of the other. */
+static void TwoSquares(Fixture *fixture, const char *const names[4])
+{
+  char *path = fixture->scene.macro.gmsh;
+  FILE *file;
+
+  fixture->scene.macro.source = LAM_MESH_GMSH;
+  strcpy(path, "/tmp/lamella-XXXXXX");
+  file = fdopen(mkstemp(path), "w");
+  assert_non_null(file);
+  fprintf(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n");
+  for (int k = 0; k < 4; k++) fprintf(file, "1 %d \"%s\"\n", k + 1, names[k]);
+  fprintf(file, "$EndPhysicalNames\n$Nodes\n8\n");
+  for (int k = 0; k < 8; k++)
+    fprintf(file, "%d %d %g 0\n", k + 1, (k & 1) ^ (k >> 1 & 1), (k >> 1 & 1) + 1.1 * (k >> 2));
+  fprintf(file, "$EndNodes\n$Elements\n6\n");
+  for (int k = 0; k < 4; k++) fprintf(file, "%d 1 2 %d 1 %d %d\n", k + 1, k + 1, 2 * k + 1, 2 * k + 2);
+  for (int k = 0; k < 2; k++)
+    fprintf(file, "%d 3 2 9 1 %d %d %d %d\n", k + 5, 4 * k + 1, 4 * k + 2, 4 * k + 3, 4 * k + 4);
+  fprintf(file, "$EndElements\n");
+  fclose(file);
+}
+
+static const char *const apart[4] = {"bottom", "top", "floor", "lid"}, *const joined[4] = {"bottom", "jaw", "jaw",
+                                                                                           "lid"};
+
+MACRO_TEST(APartThatNothingHoldsIsRefused)
+{
+  FixtureScene(fixture, 1, 1, 1, 1);
+  TwoSquares(fixture, apart);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  FixtureBoundary(fixture, "lid", NAN, 0.1);
+  CHECK(LamMacroCreate(PETSC_COMM_WORLD, &fixture->macro));
+  CHECK(LamMacroSetScene(fixture->macro, &fixture->scene));
+  CHECK(KeepErrorMessages());
+  assert_int_equal(LamMacroSetUp(fixture->macro), PETSC_ERR_USER_INPUT);
+  CHECK(PetscPopErrorHandler());
+  remove(fixture->scene.macro.gmsh);
+  if (!strstr(ErrorMessage,
+              "leave one of 2 separate parts of the body, that at (0, 1.1) in the mesh's unit, free to move "
+              "or turn as a whole"))
+    fail_msg("%s", ErrorMessage);
+}
+
+/* Each is as it would be alone, also where both swell first. */
+TEST(PartsThatAreHeldAreBodies)
+{
+  for (int inflate = 0; inflate < 2; inflate++) {
+    PetscReal force[2];
+
+    for (int alone = 0; alone < 2; alone++) {
+      FIXTURE fixture;
+      FixtureScene(&fixture, 1, 1, 1, 2);
+      if (!alone) TwoSquares(&fixture, apart);
+      if (inflate) FixtureInflate(&fixture);
+      FixtureBoundary(&fixture, "bottom", 0, 0);
+      FixtureBoundary(&fixture, "top", 0.1, 0.2);
+      if (!alone) FixtureBoundary(&fixture, "floor", 0, 0);
+      if (!alone) FixtureBoundary(&fixture, "lid", 0.05, -0.1);
+      FixtureRun(&fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+      if (!alone) remove(fixture.scene.macro.gmsh);
+      force[alone] = FixtureReaction(&fixture, "top")[1];
+    }
+    assert_near(force[0], force[1], 1e-9);
+  }
+}
+
+/* The first component of the grip is free; the lower square holds the grip, and the grip the upper one. */
+MACRO_TEST(AGripHoldsAPartThroughAnother)
+{
+  LamBoundary *grip;
+
+  FixtureScene(fixture, 1, 1, 1, 1);
+  TwoSquares(fixture, joined);
+  FixtureBoundary(fixture, "bottom", 0, 0);
+  grip = FixtureAdd(fixture, "jaw", LAM_BOUNDARY_GRIP);
+  grip->given[1] = PETSC_TRUE;
+  grip->displacement[1] = 0.1;
+  FixtureRun(fixture, PETSC_COMM_SELF, LAM_MACRO_DONE);
+  remove(fixture->scene.macro.gmsh);
+  const LamMacroFields *fields = FixtureFields(fixture);
+  for (PetscInt k = 0; k < fields->node_count; k++)
+    if (fields->nodes[2 * k + 1] > 1.05) assert_near(fields->u[2 * k + 1], 0.1, 1e-9);
 }
