@@ -35,7 +35,7 @@ told 2 thin.yaml '12:41: macro.fields.wall_thickness: is [-0-9.]* um at x = [0-9
 body | sed 's/{box.*/{gmsh: body.msh}/' >gmsh.yaml
 told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: No such file or directory; a relative path counts from the folder of the scene'
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\nmany\n' >body.msh
-told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: line 5: many is not the whole number wanted'
+told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: line 5: many is not a whole number from 1 to '
 square() { # [ENTITY OF LID]: a square of two triangles, whose lines are `base` and `lid`
   printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$PhysicalNames' 2 '1 1 "base"' '1 2 "lid"' '$EndPhysicalNames' \
     '$Nodes' 4 '1 0 0 0' '2 10 0 0' '3 10 10 0' '4 0 10 0' '$EndNodes' \
@@ -45,11 +45,22 @@ square >body.msh
 told 2 gmsh.yaml '10:19: macro.boundary: on: bottom: no such boundary of the mesh; there are base, lid'
 sed -i 's/on: bottom/on: base/; s/on: top/on: lid/' gmsh.yaml
 expect 0 "$lamella" fe2 gmsh.yaml --json
-square 1 >body.msh
-told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: line 19: an element of physical group 2 has the tag 1 of another group'
+grep -o '"reaction": {[^}]*}' out.txt >same.txt
+square 1 >body.msh # the entity of one group has the tag of another
+expect 0 "$lamella" fe2 gmsh.yaml --json
+grep -o '"reaction": {[^}]*}' out.txt | cmp -s - same.txt || fail "tags of entities are taken for those of groups"
+sed -i 's/^3 10 10 0/3 10 10 1/' body.msh
+told 2 gmsh.yaml '9:16: macro.mesh.gmsh: body.msh: node 3 lies at X3 = 1; the body is a surface in the plane X3 = 0'
 square >body.msh
 sed 's/steps: 1/&\n  regions: [{name: skin, cell: {wall_thickness: 20 um}}]/' gmsh.yaml >group.yaml
 told 2 group.yaml '12:20: macro.regions: skin: the mesh has no group of elements of this name; write where'
+# a group of all elements besides: a triangle is the skin all the same
+square | sed '5s/.*/4/; 7s/$/\n2 1 "skin"\n2 7 "all"/; s/^3 2 2 3/3 2 2 1/' >body.msh
+expect 0 "$lamella" fe2 group.yaml --json --quiet
+grep -o '"reaction": {[^}]*}' out.txt >same.txt
+sed -i '19s/.*/5/; s/^3 2 2 1\(.*\)/&\n3 2 2 7\1/; s/^4 2 2 3\(.*\)/4 2 2 7\1/' body.msh
+expect 0 "$lamella" fe2 group.yaml --json --quiet
+grep -o '"reaction": {[^}]*}' out.txt | cmp -s - same.txt || fail "an element in two groups: $(cat body.msh)"
 
 # plates and indenters that never touch the body
 cp "$source/tests/scenes/pressed-disc.yaml" disc.yaml
