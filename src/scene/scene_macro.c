@@ -38,10 +38,11 @@ static const LamKey mesh_keys[] = {
          "a geometric series: small elements where a probe or a plate presses."},
     {PATH("macro.mesh.gmsh"), INTO(LamMacroSpec, gmsh), .default_words = "none: one of `box`, `disc`, `gmsh`",
      .example = "fruit.msh",
-     .help = "A Gmsh file of format 2.2, 4.0 or 4.1, its path relative to the scene's folder: triangles of 3 and 6 nodes "
-             "and quadrilaterals of 4, 8 and 9 in the plane X3 = 0, in any mixture. Physical curves and points are "
-             "boundaries, physical surfaces are regions, by their names. Parts of the body that share no node do not "
-             "hang together; each of them must be held."},
+     .help =
+         "A Gmsh file of format 2.2, 4.0 or 4.1, its path relative to the scene's folder: triangles of 3 and 6 nodes "
+         "and quadrilaterals of 4, 8 and 9 in the plane X3 = 0, in any mixture. Physical curves and points are "
+         "boundaries, physical surfaces are regions, by their names. Parts of the body that share no node do not "
+         "hang together; each of them must be held."},
     {LENGTH("macro.mesh.unit", "mm"), ABOVE(0), .default_value = "1 mm", .example = "1 cm",
      .help = "Unit of length of the Gmsh file."},
 };
