@@ -36,7 +36,7 @@ def served(name: str, run: Callable[[], int | None]) -> int:
 
 def _words(error: OSError) -> str:
     """File and reason, without the number that Python's own messages have."""
-    return f"{error.filename}: {error.strerror}" if error.filename is not None and error.strerror else str(error)
+    return (f"{error.filename}: " if error.filename is not None else "") + (error.strerror or str(error))
 
 
 def progress(what: str) -> Callable[[int, int], None]:

@@ -188,6 +188,27 @@ for words in ("labels of several pieces: 100", "specks, smaller than 0.02 of the
 assert 1000 not in tissue.made_by["labels"] and len(tissue.cells) == count
 PYTHON
 
+"$python" - <<'PYTHON' || fail "large labels, cells within others"
+from truth import *
+import resource
+labels, cell, pixel = picture(20)
+wall = "--wall-thickness", f"{pixel} um"
+tissue, told = run(labels, pixel, *wall)
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+large, _ = run(np.where(labels == 100, 2**40, labels.astype(np.int64)), pixel, *wall)
+assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < before + 1e5 and np.allclose(large.vertices, tissue.vertices)  # KB
+assert sorted(large.made_by["labels"])[-1] == 2**40 and len(large.cells) == len(tissue.cells)
+
+# two cells within a third become part of it, as one does; one around all others is no cell
+y, x = (int(v) for v in ndimage.center_of_mass(np.kron(labels == 100, np.ones((2, 2)))))
+for second in 1000, 1001:
+    other = np.kron(labels, np.ones((2, 2), int))
+    other[y - 4:y + 4, x - 4:x], other[y - 4:y + 4, x:x + 4] = 1000, second
+    inner, told = run(other, pixel / 2, *wall)
+    assert any(f"labels {'1000' if second == 1000 else '1000, 1001'} within label 100 became part of it" in t for t in told["told"]), told
+    assert not {1000, 1001} & set(inner.made_by["labels"]) and 100 in inner.made_by["labels"]
+PYTHON
+
 "$python" - <<'PYTHON' || fail "no pictures"
 from truth import *
 from PIL import Image
@@ -197,6 +218,19 @@ Image.fromarray(labels.astype(np.int32)).save("screen.tif", resolution=72, resol
 Image.fromarray(labels.astype(np.uint16)).save("cells.png")
 Image.fromarray(np.zeros((9, 9, 3), np.uint8)).save("colours.png")
 np.save("mask.npy", labels > 0)
+np.save("empty.npy", np.zeros((0, 10)))
+np.save("cut.npy", np.kron([[1, 2], [3, 4]], np.ones((20, 20), int)))
+np.save("around.npy", np.pad(np.kron([[1, 2], [3, 4]], np.ones((20, 20), int)), 20, constant_values=5))
+Image.fromarray((labels % 250).astype(np.uint8)).save("lossy.jpg")
+pages = [Image.fromarray(((labels + k) % 250).astype(np.uint8)) for k in range(3)]
+for kind in "tif", "gif", "png":
+    pages[0].save(f"stack.{kind}", save_all=True, append_images=pages[1:])
+open("broken.tif", "wb").write(b"II*" + bytes(99))
+for name, height in (("ome.tif", 0.65), ("oblong.tif", 0.7)):
+    words = f'<OME><Pixels ID="1" PhysicalSizeX="0.65" PhysicalSizeXUnit="XXm" PhysicalSizeY="{height}"/></OME>'
+    Image.fromarray(labels.astype(np.int32)).save(name, description=words)
+    data = open(name, "rb").read().replace(b"XXm", "µm".encode())
+    open(name, "wb").write(data)
 PYTHON
 cells="$python -m lamella.cells"
 expect 0 -o "of 1 um (of the picture's tags)" $cells cells.tif -o tissue.json --wall-thickness "0.5 um"
@@ -212,6 +246,17 @@ expect 2 -e "colours.png: has the shape (9, 9, 3)" $cells colours.png -o tissue.
 expect 2 -e "a mask of walls and lumens is labelled first" $cells mask.npy -o tissue.json --pixel "1 um"
 expect 2 -e "--crop 0,0,5: four whole numbers" $cells cells.tif -o tissue.json --crop 0,0,5
 expect 2 -e "--error: .*unit" $cells cells.tif -o tissue.json --error "1 cell"
-expect 4 -e "none.tif: No such file" $cells none.tif -o tissue.json --pixel "1 um"
+expect 0 -o "of 0.65 um (of the picture's tags)" $cells ome.tif -o tissue.json --wall-thickness "0.5 um"
+rm tissue.json
+expect 2 -e "oblong.tif: its pixels are 0.65 um wide and 0.7 um high by its tags" $cells oblong.tif -o tissue.json
+for kind in tif gif png; do
+  expect 2 -e "stack.$kind: has 3 pages, and a label image has one" $cells stack.$kind -o tissue.json --pixel "1 um"
+done
+expect 2 -e "empty.npy: has the shape (0, 10)" $cells empty.npy -o tissue.json --pixel "1 um"
+expect 2 -e "cut.npy: the picture.s border cuts all of its 4 cells" $cells cut.npy -o tissue.json --pixel "1 um" --wall-thickness "1 um"
+expect 2 -e "label 5 lies around all others" $cells around.npy -o tissue.json --pixel "1 um" --wall-thickness "1 um"
+expect 2 -e "lossy.jpg: is a JPEG file, which changes labels" $cells lossy.jpg -o tissue.json --pixel "1 um"
+expect 2 -e "broken.tif: is no picture that can be read" $cells broken.tif -o tissue.json --pixel "1 um"
+expect 4 -e "none.tif: cannot be read: No such file" $cells none.tif -o tissue.json --pixel "1 um"
 expect 4 -e "no/tissue.json: cannot write" $cells cells.tif -o no/tissue.json --wall-thickness "0.5 um"
 [ ! -e tissue.json ] || fail "a refused picture has left a file"

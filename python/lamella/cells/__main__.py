@@ -119,8 +119,8 @@ def _check(tissue: Tissue, names: np.ndarray, thickness: float) -> None:
 
 def convert(told: argparse.Namespace) -> tuple[Tissue, dict[str, Any]]:
     """The tissue, and what was done and how well it fits."""
-    pixel, where = _pixel(told)
     labels = _cropped(pictures.read(told.labels), told.crop)
+    pixel, where = _pixel(told)
     picture = pictures.prepare(labels, _pixels(told, "gap", pixel), told.pieces)
     error = _pixels(told, "error", pixel)
     assert error is not None
@@ -139,6 +139,9 @@ def convert(told: argparse.Namespace) -> tuple[Tissue, dict[str, Any]]:
         thin = np.unique(cells[source[borders.lumens(tissue) <= 0]])
         if not len(thin):
             break
+    if borders.outer_sides(seen, size).any(1).all():
+        raise InputError(f"{told.labels}: the picture's border cuts all of its {len(cells)} cells, so that none can be measured: "
+                         "take a larger picture")
     names = picture.names[cells - 1]
     if told.way == "period":
         tissue, source, merged = borders.period(seen, picture, pixel, size)

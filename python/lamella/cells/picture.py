@@ -1,5 +1,7 @@
 """Label images: an integer per pixel, 0 is background. Thin background between cells is shared out to them, wide
 background is air, small pockets of air at junctions are kept apart. Lengths are pixels; x points right, y up."""
+import re
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -54,52 +56,116 @@ class Picture:
         place = ndimage.distance_transform_edt(np.isin(self.labels, cells), return_distances=False, return_indices=True)
         self.labels = self.labels[tuple(place)]
 
+    def fill(self) -> None:
+        """What lies within one cell, be it background or cells, becomes part of it. InputError: all others do."""
+        boxes = ndimage.find_objects(self.labels)
+        for host in sorted(np.unique(self.labels[self.labels > 0]), key=lambda k: -_area(boxes[k - 1])):
+            part = self.labels[boxes[host - 1]]
+            number, count = ndimage.label(np.pad(part != host, 1, constant_values=True))
+            if count < 2 or not (part == host).any():  # it lay within another one
+                continue
+            hole = (number > 0)[1:-1, 1:-1] & (number[1:-1, 1:-1] != number[0, 0])
+            lost = self.names[np.unique(part[hole & (part > 0)]) - 1]
+            part[hole] = host
+            if len(lost) and (self.labels[self.labels > 0] == host).all():
+                raise InputError(f"label {self.names[host - 1]} lies around all others: if it is background, give it the "
+                                 "number 0")
+            self.told.append(f"{'background' if not len(lost) else 'labels ' + few(lost)} within label "
+                             f"{self.names[host - 1]} became part of it")
+
+
+def _area(box: tuple[slice, slice]) -> int:
+    return (box[0].stop - box[0].start) * (box[1].stop - box[1].start)
+
 
 def read(path: str) -> np.ndarray:
-    """Labels [rows, columns] of a .npy, TIFF or PNG file."""
+    """Labels [rows, columns] of a .npy, TIFF, PNG or GIF file."""
     try:
-        labels = np.load(path) if Path(path).suffix == ".npy" else _image(path)
+        open(path, "rb").close()
     except OSError as error:
-        raise (OSError if error.strerror else InputError)(f"{path}: {error.strerror or error}") from None
-    except ValueError as error:
-        raise InputError(f"{path}: no array of numbers: {error}") from None
-    labels = np.squeeze(labels)
-    if labels.ndim != 2:
+        raise OSError(f"{path}: cannot be read: {error.strerror}") from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what follows as an error, or of tags
+            labels = np.load(path) if Path(path).suffix == ".npy" else _image(path)
+    except (InputError, MemoryError):
+        raise
+    except Exception as error:  # Pillow's readers have many kinds
+        raise InputError(f"{path}: is no picture that can be read: {error}; give a TIFF, PNG or GIF file, or a .npy of "
+                         "whole numbers") from None
+    labels = np.squeeze(labels) if np.ndim(labels) > 2 else np.asarray(labels)
+    if labels.ndim != 2 or not labels.size:
         raise InputError(f"{path}: has the shape {labels.shape}: one plane with a number per pixel is wanted")
-    if not np.isfinite(labels).all() or (labels != np.rint(labels)).any() or labels.min() < 0:
+    if labels.dtype.kind not in "biuf" or not np.isfinite(labels).all() or (labels != np.rint(labels)).any() \
+            or labels.min() < 0:
         raise InputError(f"{path}: labels are whole numbers, 0 is background")
-    return labels.astype(np.int64)
+    return labels
 
 
 def _image(path: str) -> np.ndarray:
+    from PIL import Image  # type: ignore[import]
     if Path(path).suffix.lower() in (".tif", ".tiff"):
         try:
             import tifffile  # type: ignore[import]  # reads what Pillow does not: 64 bits, BigTIFF
-            return tifffile.imread(path)
+            with tifffile.TiffFile(path) as file:
+                _refuse_pages(path, len(file.pages))
+                return file.asarray()
         except ImportError:
             pass
-    from PIL import Image  # type: ignore[import]
     with Image.open(path) as image:
+        _refuse_pages(path, getattr(image, "n_frames", 1))
+        if image.format == "JPEG":
+            raise InputError(f"{path}: is a JPEG file, which changes labels; save them as TIFF or PNG")
         return np.asarray(image)
 
 
+def _refuse_pages(path: str, pages: int) -> None:
+    if pages != 1:
+        raise InputError(f"{path}: has {pages} pages, and a label image has one: save the page that is wanted as a file "
+                         "of its own")
+
+
 def resolution(path: str) -> float | None:
-    """Metres per pixel by the tags of a TIFF file, or None."""
+    """Metres per pixel by the tags of a TIFF file, those of OME and ImageJ too, or None. InputError: pixels are not
+    square."""
     from PIL import Image  # type: ignore[import]
     try:
-        with Image.open(path) as image:
+        with warnings.catch_warnings(), Image.open(path) as image:
+            warnings.simplefilter("ignore")
             tags: Any = getattr(image, "tag_v2", {})
             across, up, unit, words = (tags.get(k) for k in (282, 283, 296, 270))  # of TIFF 6.0
-    except OSError:
+    except Exception:  # it is read later, with a message
         return None
-    if not across or across != up or (unit == 2 and float(across) in SCREENS):
+    words = str(words or "").encode("latin-1", "replace").decode("utf-8", "replace")  # as Pillow reads what is UTF-8
+    sizes = [_ome(words, axis) for axis in "XY"]
+    if None in sizes:
+        metres = {2: 0.0254, 3: 0.01}.get(unit)
+        for line in words.splitlines():  # ImageJ's own unit
+            if line.startswith("unit="):
+                metres = _length(f"1 {line[5:]}")
+        if not metres or not across or not up or (unit == 2 and float(across) in SCREENS):
+            return None
+        sizes = [metres / float(across), metres / float(up)]
+    if not np.isclose(*sizes, rtol=1e-6):
+        raise InputError(f"{path}: its pixels are {1e6 * sizes[0]:.6g} um wide and {1e6 * sizes[1]:.6g} um high by its "
+                         "tags: resample the picture to square ones, or give --pixel if the tags are wrong")
+    return sizes[0]
+
+
+def _ome(words: str, axis: str) -> float | None:
+    """PhysicalSize of OME-XML in m; its unit is um unless it is there."""
+    size, unit = (re.search(rf'<Pixels\b[^>]*\bPhysicalSize{axis}{name}="([^"]*)"', words) for name in ("", "Unit"))
+    return _length(f"{size[1]} {unit[1] if unit else 'um'}") if size else None
+
+
+def _length(text: str) -> float | None:
+    """In m, with the ways that pictures have of writing um; None: it is none."""
+    for name in ("\\u00B5", "&#181;", "&#xB5;", "µ", "μ"):
+        text = text.replace(name, "u")
+    try:
+        return quantity(text.replace("micron", "um"), "length")
+    except InputError:
         return None
-    metres = {2: 0.0254, 3: 0.01}.get(unit)
-    for line in str(words or "").splitlines():  # ImageJ's own unit
-        if line.startswith("unit="):
-            name = line[5:].replace("\\u00B5", "u").replace("µ", "u").replace("micron", "um")
-            metres = quantity(f"1 {name}", "length")
-    return metres / float(across) if metres else None
 
 
 def beside(labels: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -137,11 +203,11 @@ def few(names: np.ndarray) -> str:
     return ", ".join(map(str, names[:5])) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
 
 
-def _rubbish(labels: np.ndarray, pieces: str, told: list[str]) -> np.ndarray:
-    """Where lesser pieces and specks are."""
+def _rubbish(labels: np.ndarray, given: np.ndarray, pieces: str, told: list[str]) -> np.ndarray:
+    """Where lesser pieces and specks are; given: names of the labels."""
     lesser = _lesser(labels)
     if lesser.any():
-        words = f"labels of several pieces: {few(np.unique(labels[lesser]))}"
+        words = f"labels of several pieces: {few(given[np.unique(labels[lesser])])}"
         if pieces == "refuse":
             raise InputError(f"{words}: give each cell a number of its own, or --pieces largest")
         told.append(f"{words}: the largest was kept of each")
@@ -149,7 +215,7 @@ def _rubbish(labels: np.ndarray, pieces: str, told: list[str]) -> np.ndarray:
     area[0] = 0
     specks = np.flatnonzero((area > 0) & (area < SPECK * np.median(area[area > 0]))) if area.any() else area[:0]
     if len(specks):
-        told.append(f"specks, smaller than {SPECK} of the median cell, were taken out: {few(specks)}")
+        told.append(f"specks, smaller than {SPECK} of the median cell, were taken out: {few(given[specks])}")
     return lesser | np.isin(labels, specks)
 
 
@@ -216,8 +282,11 @@ def prepare(labels: np.ndarray, gap: float | None, pieces: str) -> Picture:
     median width of the background between cells (where three walls of a width meet at 120 degrees, a disc of 1.15
     widths fits; sharp corners have more), 3 pixels at least, so that frayed borders of labels are no air."""
     told: list[str] = []
-    labels = labels[::-1]
-    rubbish = _rubbish(labels, pieces, told)  # goes to the cell beside it; or it would widen lines to air
+    shape = labels.shape
+    given, labels = np.unique(labels[::-1], return_inverse=True)  # as many numbers as labels: they may be large
+    labels = np.reshape(labels, shape) + int(given[0] != 0)
+    given = given if given[0] == 0 else np.append(0, given)
+    rubbish = _rubbish(labels, given, pieces, told)  # goes to the cell beside it; or it would widen lines to air
     background, labels = labels == 0, np.where(rubbish, 0, labels)
     if len(np.unique(labels[labels > 0])) < 2:
         raise InputError("fewer than two labels: each cell has a number of its own in a label image; a mask of "
@@ -235,8 +304,8 @@ def prepare(labels: np.ndarray, gap: float | None, pieces: str) -> Picture:
         shared = shared[tuple(place)]
     hanging = _hanging(shared)
     if len(hanging):
-        told.append(f"cells that hang at no others were taken out: {few(hanging)}")
+        told.append(f"cells that hang at no others were taken out: {few(given[hanging])}")
         shared = np.where(np.isin(shared, hanging), 0, shared)
     names, number = np.unique(_without_points(shared), return_inverse=True)
     number = number.reshape(shared.shape) + (names[0] > 0)
-    return Picture(number, names[names > 0], gap, lines, float(share), pockets, told)
+    return Picture(number, given[names[names > 0]], gap, lines, float(share), pockets, told)

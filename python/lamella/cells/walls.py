@@ -10,12 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import ndimage
 from scipy.sparse import coo_matrix, identity
 from scipy.sparse.linalg import spsolve
 
 from .. import InputError
-from .picture import Picture, few
+from .picture import Picture
 
 OUTSIDE = -1
 HOLD = 1e-2  #: weight of a vertex' first place, in cracks: where walls that are in line leave it free
@@ -100,12 +99,10 @@ class Walls:
     def __init__(self, picture: Picture, error: float) -> None:
         self.names, self.error = picture.names, error
         self.told: list[str] = []
+        picture.fill()
         labels, trace = picture.labels, _Trace(picture.labels)
         if trace.loops:
-            labels = self._without_holes(labels, trace)
-            trace = _Trace(labels)
-        if trace.loops:
-            raise InputError("all cells lie within one: there is no tissue")
+            raise InputError("air lies around a single cell: there is no tissue")
         self.top, self.area = np.array(labels.shape[::-1], float), np.bincount(labels.ravel()).astype(float)
         corners = sorted({c for path, _, _ in trace.curves for c in (path[0], path[-1])})
         number = {c: k for k, c in enumerate(corners)}
@@ -119,20 +116,6 @@ class Walls:
         self.junctions = len(self.x)
         self._bend_twins()
         self._fit_bends()
-
-    def _without_holes(self, labels: np.ndarray, trace: _Trace) -> np.ndarray:
-        """What lies within one cell becomes part of it."""
-        labels = labels.copy()
-        for corners, left, right in trace.loops:
-            x, y = trace.points(corners).T
-            host = right if (x[:-1] * y[1:] - x[1:] * y[:-1]).sum() > 0 else left
-            if host > 0:
-                hole = ndimage.binary_fill_holes(labels == host) & (labels != host)
-                lost = self.names[np.unique(labels[hole & (labels > 0)]) - 1]
-                self.told.append(f"{f'labels {few(lost)}' if len(lost) else 'background'} within label "
-                                 f"{self.names[host - 1]} became part of it")
-                labels[hole] = host
-        return labels
 
     def _around(self) -> dict[int, list[tuple[Curve, bool]]]:
         """Of each cell, in the order of their labels, its curves in a row."""
