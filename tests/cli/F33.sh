@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A database with a range of F33: built, joined, repaired and queried as others are, and of no meaning to plane strain.
 . "$(dirname "$0")/common.sh"
+serve=1
 set -e -o pipefail
 
 tissue >plane.yaml <<'YAML'

@@ -7,6 +7,7 @@
 #   expect STATUS [-o WORDS] [-e WORDS] COMMAND...
 #                               the command ends with that status; what it says is in out.txt and err.txt, and each of
 #                               -o and -e tells of words (of grep) that stand there
+#                               with serve=1 before, commands of "$lamella" go to one process (served)
 #   has FILE WORDS...           the file has all of these words (of grep)
 #   ends SIGNAL STATUS PID [RECEIVER]
 #                               a process of this shell ends with that status when it, or RECEIVER, is sent the signal
@@ -24,7 +25,7 @@ set -u
 lamella=$(realpath "$1") source=$(realpath "$2")
 work=$(mktemp -d)
 failures=0
-trap 'status=$?; rm -rf "$work"; [ $failures -eq 0 ] || status=1; exit $status' EXIT
+trap 'status=$?; [ -z "${SERVER_PID:-}" ] || dismiss; rm -rf "$work"; [ $failures -eq 0 ] || status=1; exit $status' EXIT
 cd "$work" || exit 1
 
 fail() {
@@ -46,6 +47,8 @@ expect() {
     [ "$option" = o ] && told["$OPTARG"]=out.txt || told["$OPTARG"]=err.txt
   done
   shift $((OPTIND - 1))
+  # not what reads standard input or has options of PETSc
+  [[ -z ${serve:-} || $1 != "$lamella" || " ${*:2} " =~ \ --?\  || $PWD != "$work" ]] || set -- served "${@:2}"
   "$@" >out.txt 2>err.txt || status=$?
   [ $status -eq "$wanted" ] || fail "exit status $status instead of $wanted: $*: $(cat out.txt err.txt)"
   for words in "${!told[@]}"; do
@@ -62,6 +65,13 @@ served() {
   cat served.out
   cat served.err >&2
   return "$status"
+}
+
+# The process of all commands ends, in good order.
+dismiss() {
+  local pid=$SERVER_PID input=${SERVER[1]}
+  exec {input}>&-
+  wait "$pid" || fail "the process of all commands ends with status $?"
 }
 
 ends() {

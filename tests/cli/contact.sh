@@ -1,5 +1,6 @@
 # Contact tissue on the command line: states, second mesh, onset of separation, files, pictures, answers, refusals.
 . "$(dirname "$0")/common.sh"
+serve=1
 
 # scene COHESION LOAD...: writes scene.yaml
 scene() {
@@ -136,13 +137,9 @@ with h5py.File("apart.h5") as f:
 PYTHON
 fi
 
-# pictures
-for state in 1 2; do
-  expect 0 "$lamella" plot --dpi 40 apart.h5 --state $state -o state$state.png
-  head -c 8 state$state.png | grep -qa PNG || fail "no picture of state $state"
-done
-expect 0 "$lamella" plot --dpi 40 apart.h5 -o apart.svg
-grep -q '<svg' apart.svg || fail "no SVG picture"
+# a picture
+expect 0 "$lamella" plot --dpi 40 apart.h5 --state 2 -o state2.png
+head -c 8 state2.png | grep -qa PNG || fail "no picture of state 2"
 
 # answers from records of contact tissue: near their turgor and cohesion, gaps only in a record's own state
 expect 0 "$lamella" query spread.h5 -F "1 0.0201 0 1" -p "0.002 MPa" --json

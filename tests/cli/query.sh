@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # lamella query: answers in reach, refusals out of reach, many questions from standard input.
 . "$(dirname "$0")/common.sh"
+serve=1
 set -e -o pipefail
 
 tissue >s.yaml <<'YAML'

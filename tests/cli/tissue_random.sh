@@ -1,17 +1,17 @@
-# slow: 200 tissues with random numbers: all of them can be had, and are as docs/reference/tissue.md says.
-# With a folder as the third argument the files stay there.
+# slow: 40 tissues with random numbers: all of them can be had, and are as docs/reference/tissue.md says. LAMELLA_SEEDS=200
+# takes all tissues of its table. With a folder as the third argument the files stay there.
 . "$(dirname "$0")/common.sh"
 
 package scipy
 
-"$python" - "${3:-.}" <<'PYTHON' || fail "random tissue"
+"$python" - "${3:-.}" "${LAMELLA_SEEDS:-40}" <<'PYTHON' || fail "random tissue"
 import sys
 import numpy as np
 from lamella.tissue import Tissue, geometry
 from lamella.tissue.make import Asked, make
 
 rng, rows = np.random.default_rng(32), []
-for seed in range(200):
+for seed in range(int(sys.argv[2])):
     cells, variation, elongation = int(rng.integers(20, 61)), rng.uniform(0, 0.5), rng.uniform(1, 3)
     direction, gas, size = rng.uniform(-90, 90), rng.uniform(0, 0.3), rng.uniform(50, 250)
     apothem = np.sqrt(np.pi * size**2 / 4 / (2 * np.sqrt(3)))

@@ -23,14 +23,14 @@ expect 1 "one argument too many" "$lamella" help rve fe2
 expect 0 "Usage: lamella help" "$lamella" help help
 for command in check rve build query verify fe2 process tradeoff map tear plot info; do
   grep -q "^  $command " help.txt || fail "--help does not name $command"
-  expect 0 "Usage: lamella $command" "$lamella" $command --help
+  expect 0 "Usage: lamella $command" served $command --help
   [ -s err.txt ] && fail "$command --help goes to stderr"
   cp out.txt command.txt
-  expect 0 "Usage: lamella $command" "$lamella" help $command
+  expect 0 "Usage: lamella $command" served help $command
   cmp -s out.txt command.txt || fail "help $command differs from $command --help"
-  expect 1 "lamella $command --help" "$lamella" $command
-  expect 1 "lamella $command --help" "$lamella" $command a b
-  expect 1 "--no-such-option" "$lamella" $command --no-such-option
+  expect 1 "lamella $command --help" served $command
+  expect 1 "lamella $command --help" served $command a b
+  expect 1 "--no-such-option" served $command --no-such-option
 done
 
 version=$(sed -n 's/^project(lamella VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
