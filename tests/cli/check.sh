@@ -1,5 +1,6 @@
 # lamella check: the plan, in agreement with what is then solved.
 . "$(dirname "$0")/common.sh"
+serve=1
 
 # number FILE NAME: the first number of that name in a JSON line
 number() { grep -oE "\"$2\": *[-0-9.e+]+" "$1" | head -1 | sed 's/.*: *//'; }

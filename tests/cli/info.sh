@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # lamella info: describes what lamella wrote, refuses what it did not write.
 . "$(dirname "$0")/common.sh"
+serve=1
 set -e -o pipefail
 
 tissue >s.yaml <<'YAML'
