@@ -27,7 +27,8 @@ typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
 LAM_EXPORT extern const char *const LamSourceNames[];
 
 #define LAM_VISIBLE_GAP 1e-3 /* apothems: larger gaps count as open */
-#define LAM_BROKEN 0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end */
+#define LAM_BROKEN 0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end  \
+                         */
 #define LAM_UNKNOWN_COUNT -1 /* an unknown count; null in JSON */
 
 /*
@@ -105,13 +106,13 @@ typedef struct {
   PetscInt percolating_directions; /* number of independent period directions, 0 to 2, that a group spans */
   PetscInt negative_eigenvalues;   /* of the consistent tangent */
   PetscBool stable;
-  /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored + dissipated;
-     work and released are known if all states so far were solved with LAM_WANT_STRESS */
-  PetscReal stored;     /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
-  PetscReal dissipated; /* spent in the lamella and in walls that tear, ... */
+  /* Of law `lamella`; unknown for other laws. Energies per V0 since the undeformed tissue; energy = stored +
+     dissipated; work and released are known if all states so far were solved with LAM_WANT_STRESS */
+  PetscReal stored;           /* energy without what was spent: walls, fluid, and the lamella's elastic energy */
+  PetscReal dissipated;       /* spent in the lamella and in walls that tear, ... */
   PetscReal dissipated_walls; /* ... and in these alone */
-  PetscReal work;       /* of stress, turgor and suction, by the trapezoidal rule: stored + dissipated + released */
-  PetscReal released;   /* lost in jumps, i.e. to sound and heat */
+  PetscReal work;     /* of stress, turgor and suction, by the trapezoidal rule: stored + dissipated + released */
+  PetscReal released; /* lost in jumps, i.e. to sound and heat */
   PetscReal broken_fraction; /* share of the lamella's fracture energy that is spent */
   PetscReal broken_by_face[3];
   PetscReal burst_fraction; /* share of the cells that have burst: a wall is torn through, and turgor is lost */
@@ -134,8 +135,13 @@ typedef struct {
   char reason[192];         /* why the status is not `converged`; otherwise empty */
 } LamResponse;
 
+/* Components of F that differ by less are the same: what the arithmetic of a program that calls leaves of a 0, seen up
+   to 2e-10, with room. An error of F of this size is one of some 1e-6 of the tissue's moduli. */
+#define LAM_ROUNDED_F 1e-6
 /* True if F33 = 1 and there are no out-of-plane shears. */
 LAM_EXPORT PetscBool LamPlaneStrain(const PetscReal F[9]);
+/* Sets out-of-plane shears to 0, if all are that small. */
+LAM_EXPORT void LamRoundToPlane(PetscReal F[9]);
 /* Returns PETSC_FALSE, and sets status and reason of the response, if the load is not admissible in plane strain;
    LamLoadValidateInPlane: likewise with any F33. */
 LAM_EXPORT PetscBool LamLoadValidateInPlane(const LamLoad *load, LamResponse *response);

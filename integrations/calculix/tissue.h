@@ -48,7 +48,7 @@ typedef struct {
 int TissueRespond(Tissue tissue, const TissueLoad *load, const double begin[TISSUE_VARIABLES],
                   double end[TISSUE_VARIABLES], TissueResponse *response);
 
-/* Row-major F of a host's, by columns; what is rounding of the components that plane strain has not is taken off. */
+/* Row-major F of a host's, by columns. */
 void TissueGradient(const double columns[9], double F[9]);
 /* Tells once for each attempt at an increment, which ends at `time`, why it is cut back. */
 void TissueReport(const TissueLoad *load, double time, const char reason[]);

@@ -19,6 +19,7 @@
 #include "antiplane.h"
 #include "end_walls.h"
 #include "measure.h"
+#include "section_frame.h"
 #include <lamella/ellipticity.h>
 
 #define Q_F33 4

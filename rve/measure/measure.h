@@ -45,10 +45,6 @@ typedef struct {
  */
 PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, const PetscReal solutions[],
                                 LamAxialDerivatives *out);
-/* Components 13 and 23 of P, and of a tensor that is linear in it, from the others in the frame of the section. */
-void LamSectionCompleteStress(const PetscReal F[9], PetscReal P[9]);
-/* The same of P, and rows and columns 13 and 23 of the tangent A. */
-void LamSectionComplete(const PetscReal F[9], PetscReal P[9], PetscReal A[81]);
 
 /* Whether a value exceeds that of the location reported so far by more than rounding (C1 + C2 or apothems). Among
    locations that are equal by symmetry the first one is reported, regardless of the last digits. Every value exceeds

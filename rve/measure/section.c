@@ -5,7 +5,7 @@
   condensed after the positions in the plane. With y_q the change of positions at fixed z,
     H_qr = L_qr + L_qy y_r  at fixed z;   r_q = L_zq + L_zy y_q;   S = L_zz - L_zy K^-1 L_yz;   H_qr -= r_q S^-1 r_r.
   Only walls and the lamella have derivatives with respect to z and G. To first order the solution is at z - S^-1 L_z.
-  Components 13 and 23 follow from objectivity, P F^T = F P^T and its rate, as F_13 = F_23 = 0.
+  Components 13 and 23 follow from objectivity (src/core/section_frame.c).
 */
 #include "antiplane.h"
 #include "measure.h"
@@ -89,60 +89,4 @@ PetscErrorCode LamCondenseAxial(LamRVE rve, const LamLoad *load, PetscInt nq, co
   }
   PetscCall(PetscFree2(data, work));
   PetscFunctionReturn(0);
-}
-
-/* ---- objectivity ---- */
-
-void LamSectionCompleteStress(const PetscReal F[9], PetscReal P[9])
-{
-  for (PetscInt a = 0; a < 2; ++a) {
-    P[3 * a + 2] = 0.0;
-    for (PetscInt b = 0; b < 2; ++b) P[3 * a + 2] += (P[6 + b] * F[3 * a + b] - P[3 * a + b] * F[6 + b]) / F[8];
-  }
-}
-
-/* dP [9] for a change dF without components 13 and 23, from the rows of the tangent for all others. */
-static void Change(const PetscReal F[9], const PetscReal P[9], const PetscReal A[81], const PetscReal dF[9],
-                   PetscReal dP[9])
-{
-  for (PetscInt r = 0; r < 9; ++r) {
-    dP[r] = 0.0;
-    for (PetscInt c = 0; c < 9 && r != 2 && r != 5; ++c)
-      if (c != 2 && c != 5) dP[r] += A[9 * r + c] * dF[c];
-  }
-  for (PetscInt a = 0; a < 2; ++a) {
-    PetscReal sum = -P[3 * a + 2] * dF[8];
-
-    for (PetscInt b = 0; b < 2; ++b)
-      sum += dP[6 + b] * F[3 * a + b] + P[6 + b] * dF[3 * a + b] - dP[3 * a + b] * F[6 + b] - P[3 * a + b] * dF[6 + b];
-    dP[3 * a + 2] = sum / F[8];
-  }
-}
-
-void LamSectionComplete(const PetscReal F[9], PetscReal P[9], PetscReal A[81])
-{
-  PetscReal full[81];
-
-  LamSectionCompleteStress(F, P);
-  for (PetscInt c = 0; c < 9; ++c) {
-    const PetscInt a = c / 3;
-    PetscReal dF[9] = {0.0}, dP[9];
-
-    dF[c] = 1.0;
-    if (c == 2 || c == 5) { /* dF = W F + rest, W skew, W_a3 = 1/F33 */
-      dF[c] = 0.0;
-      for (PetscInt b = 0; b < 2; ++b) {
-        dF[3 * a + b] = -F[6 + b] / F[8];
-        dF[6 + b] = F[3 * a + b] / F[8];
-      }
-    }
-    Change(F, P, A, dF, dP);
-    if (c == 2 || c == 5)
-      for (PetscInt j = 0; j < 3; ++j) { /* W P */
-        dP[3 * a + j] += P[6 + j] / F[8];
-        dP[6 + j] -= P[3 * a + j] / F[8];
-      }
-    for (PetscInt r = 0; r < 9; ++r) full[9 * r + c] = dP[r];
-  }
-  for (PetscInt k = 0; k < 81; ++k) A[k] = full[k];
 }

@@ -9,6 +9,7 @@
 */
 #include "mixed.h"
 #include "clock.h"
+#include "section_frame.h"
 
 static const char *const component_names[9] = {"11", "12", "13", "21", "22", "23", "31", "32", "33"};
 

@@ -1,6 +1,7 @@
 #include "antiplane.h"
 #include "solve.h"
 #include "clock.h"
+#include "section_frame.h"
 
 PetscErrorCode LamRVECreate(MPI_Comm comm, LamRVE *rve)
 {

@@ -131,10 +131,6 @@ PetscErrorCode LamProlong(LamRVE coarse, LamRVEState from, LamRVE rve, LamRVESta
 PetscErrorCode LamNestedStart(LamRVE rve, const LamLoad *load, LamRVEState start, LamResponse *coarse_response);
 
 /* ---- out_of_plane.c ---- */
-/* A load in the frame of the section: turned so that F_13 = F_23 = 0. */
-LamLoad LamSectionLoad(const LamLoad *load);
-/* Turns a response from the frame of the section to that of its load. */
-void LamSectionTurnBack(const LamLoad *load, LamResponse *response);
 /* Whether load (in the frame of the section), state or walls have a third component of positions. */
 PetscBool LamIsOutOfPlane(LamRVE rve, const LamLoad *load, const LamRVEState state);
 /* Sets z and G to those of a state; stores them. */

@@ -23,16 +23,20 @@ LamLoad LamLoadOfStrains(PetscReal first, PetscReal second, PetscReal angle, Pet
   return (LamLoad){.F = {U11, U12, 0, U12, U22, 0, 0, 0, 1}, .turgor = turgor, .cohesion = cohesion};
 }
 
-static const PetscReal TINY = 10 * PETSC_MACHINE_EPSILON;
-
 static PetscBool NoShear(const PetscReal F[9])
 {
-  return (PetscBool)(fabs(F[2]) <= TINY && fabs(F[5]) <= TINY && fabs(F[6]) <= TINY && fabs(F[7]) <= TINY);
+  return (PetscBool)(fabs(F[2]) <= LAM_ROUNDED_F && fabs(F[5]) <= LAM_ROUNDED_F && fabs(F[6]) <= LAM_ROUNDED_F &&
+                     fabs(F[7]) <= LAM_ROUNDED_F);
+}
+
+void LamRoundToPlane(PetscReal F[9])
+{
+  if (NoShear(F)) F[2] = F[5] = F[6] = F[7] = 0;
 }
 
 PetscBool LamPlaneStrain(const PetscReal F[9])
 {
-  return (PetscBool)(NoShear(F) && fabs(F[8] - 1) <= TINY);
+  return (PetscBool)(NoShear(F) && fabs(F[8] - 1) <= LAM_ROUNDED_F);
 }
 
 PetscBool LamLoadValidateInPlane(const LamLoad *load, LamResponse *r)

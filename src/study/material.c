@@ -147,12 +147,15 @@ PetscErrorCode LamMaterialSetAccuracy(LamMaterial m, double accuracy)
 static PetscErrorCode EvaluateOne(LamMaterial m, int point, const LamLoad *load, LamResponse *response)
 {
   const PetscInt number = point;
+  LamLoad rounded = *load;
 
   PetscFunctionBeginUser;
-  if (m->rve)
-    PetscCall(LamResponderRespond(m->responder, 1, load, &number, response));
-  else
+  if (m->rve) {
+    if (!m->scene->out_of_plane) LamRoundToPlane(rounded.F);
+    PetscCall(LamResponderRespond(m->responder, 1, &rounded, &number, response));
+  } else {
     PetscCall(LamDatabaseQuery(m->database.database, load, m->accuracy, response));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -68,3 +68,36 @@ F[2, 2] = 1.2
 r = lamella.Database("db.h5").query(F, 0.02e6, accuracy=np.inf)
 assert r.status == "out_of_reach" and "0.9 to 1.15" in str(r.reason), r.reason
 PYTHON
+
+# out-of-plane shear: a rotation of the section is none; a small one is answered as a solve does, a large one by tissue in contact
+# alone, whose cells slide along their axis
+cat one.yaml >contact.yaml
+sed -i 's/law: bonded/law: contact/; s/\[1.05, 0.02, 0\], \[0, 1.03, 0\], \[0, 0, 1.1\]/[1.05, 0.02], [0, 1.03]/' contact.yaml
+expect 0 "$lamella" rve contact.yaml -o contact.h5 --quiet
+"$python" - <<'PYTHON' || fail "out-of-plane shear"
+import numpy as np, lamella
+F0 = np.diag([1.05, 1.03, 1.1]); F0[0, 1] = 0.02
+c, s = np.cos(0.3), np.sin(0.3)
+Q = np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+ask = lambda file, F: lamella.Database(file).query(F, 0.02e6, accuracy=np.inf)
+small = F0.copy(); small[2, :2] = 2e-5, -1e-5
+sheared = np.diag([1.05, 1.03, 1]); sheared[0, 1] = 0.02; sheared[2, :2] = 0.1, 0.05
+
+plane, turned = ask("db.h5", F0), ask("db.h5", Q @ F0)
+assert np.allclose(turned.P, Q @ plane.P, rtol=0, atol=1e-7 * abs(plane.P).max()), (turned.P, Q @ plane.P)
+for F, file, scene in ((Q @ small, "db.h5", "one.yaml"), (Q @ sheared, "contact.h5", "contact.yaml")):
+    r, rve = ask(file, F), lamella.RVE(scene).solve(F, 0.02e6)
+    assert r.status == "converged", r.reason
+    assert abs(r.P - rve.P).max() < 2e-3 * abs(rve.P).max(), (r.P, rve.P)
+    step = np.zeros((3, 3)); step[0, 2] = step[2, 1] = 1e-6  # the tangent is the derivative of the answers
+    slope = (ask(file, F + step).P - ask(file, F - step).P) / 2e-6
+    found = np.einsum("ijkl,kl", r.tangent, step / 1e-6)
+    assert np.allclose(found, slope, rtol=0, atol=1e-4 * abs(r.tangent).max()), (found, slope)
+assert r.error_estimate < 1e-9 or np.isnan(r.error_estimate)
+
+small[2, 0] = 0.01
+r = ask("db.h5", small)
+assert r.status == "out_of_reach" and "F31 = 0.01, F32 = -1e-05: out-of-plane shear of 0.01; the database answers up to 0.0001" in str(r.reason), r.reason
+rounded = np.diag([1.05, 1.03, 1 + 4e-7]); rounded[1, 2] = 2e-10  # the arithmetic of a host
+assert ask("plane.h5", rounded).converged and np.allclose(ask("plane.h5", rounded).P, ask("plane.h5", np.diag([1.05, 1.03, 1])).P, rtol=1e-5, atol=1)
+PYTHON
