@@ -1,5 +1,6 @@
 # what the program says where tissue localises or its walls kink: rve, query, fe2
 . "$(dirname "$0")/common.sh"
+serve=1
 
 # scene FIBRES LOADS...
 scene() {

@@ -1,5 +1,6 @@
 # lamella rve --failure: what walls and lamella bear, the verdict, and none where nothing allows it.
 . "$(dirname "$0")/common.sh"
+serve=1
 
 example=$source/tests/scenes/failure.yaml
 

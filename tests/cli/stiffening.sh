@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fibres that stiffen exponentially, in all commands that know the parameters of a wall.
 . "$(dirname "$0")/common.sh"
+serve=1
 set -e -o pipefail
 scene=$source/tests/scenes/stiffening.yaml
 law='law: fibre_exponential'
