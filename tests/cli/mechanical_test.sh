@@ -1,5 +1,6 @@
 # lamella rve: a load from the inflated tissue, what is read off its curve, and its table.
 . "$(dirname "$0")/common.sh"
+serve=1
 
 scene=$source/tests/scenes/apple-tension.yaml
 expect 0 "$lamella" rve "$scene" --json --at 0.05,0.3 -o apple.h5

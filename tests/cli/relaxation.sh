@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Walls with memory in rve and process, what they write, and where they are refused.
 . "$(dirname "$0")/common.sh"
+serve=1
 set -e -o pipefail
 scene=$source/tests/scenes/relaxation.yaml
 
