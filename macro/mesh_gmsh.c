@@ -245,13 +245,72 @@ static int CompareProjections(const void *a, const void *b)
   return (one > other) - (one < other);
 }
 
-/* Refuses nodes that lie on nodes of another part of the body: a mesh that was not merged. Nodes along a crack belong
-   to one part. */
-static PetscErrorCode CheckParts(Body *body)
+static double Along(const LamGmshNode *node)
 {
   const double angle = 1; /* any that no lattice has */
-  size_t n = 0, twice = 0, first[2] = {0, 0};
+
+  return node->X[0] * cos(angle) + node->X[1] * sin(angle);
+}
+
+/* Whether a node lies on the chord of an edge. */
+static PetscBool IsOn(const Body *body, size_t node, size_t from, size_t to)
+{
+  const double *X = NodeOf(body, node)->X, *A = NodeOf(body, from)->X, *B = NodeOf(body, to)->X;
+  const double along[2] = {B[0] - A[0], B[1] - A[1]}, off[2] = {X[0] - A[0], X[1] - A[1]};
+  const double square = along[0] * along[0] + along[1] * along[1];
+  const double share = PetscMax(0, PetscMin(1, (along[0] * off[0] + along[1] * off[1]) / square));
+
+  return (PetscBool)(hypot(off[0] - share * along[0], off[1] - share * along[1]) <= NEAR * body->size);
+}
+
+/* Refuses nodes that lie on nodes or edges of another part of the body: a mesh that was not merged. Nodes along a crack
+   belong to one part. `nodes`: corners, sorted. */
+static void CheckTouching(Body *body, size_t n, const Projection nodes[])
+{
+  const Edge *edges = body->edges.items;
+  size_t twice = 0, first[2] = {0, 0};
+
+  for (size_t k = 0; k < n; k++)
+    for (size_t l = k + 1; l < n && nodes[l].along - nodes[k].along <= 2 * NEAR * body->size; l++) {
+      const double *X = NodeOf(body, nodes[k].node)->X, *Y = NodeOf(body, nodes[l].node)->X;
+
+      if (hypot(X[0] - Y[0], X[1] - Y[1]) > NEAR * body->size ||
+          PartOf(body, nodes[k].node) == PartOf(body, nodes[l].node))
+        continue;
+      if (!twice++) first[0] = nodes[k].node, first[1] = nodes[l].node;
+      break;
+    }
+  if (twice)
+    Wrong(body,
+          "%zu nodes of one part of the body lie on nodes of another, such as %lld on %lld, and do not hang together "
+          "with them; merge the mesh (in Gmsh: Coherence, or BooleanFragments before meshing)",
+          twice, (long long)TagOf(body, first[0]), (long long)TagOf(body, first[1]));
+  for (size_t k = 0; k < body->edges.count && !body->why[0]; k++) {
+    const size_t from = (size_t)edges[k].key[0], to = (size_t)edges[k].key[1];
+    const double ends[2] = {Along(NodeOf(body, from)), Along(NodeOf(body, to))};
+    size_t low = 0;
+
+    for (size_t high = n; low < high;) { /* the first node that is not before the edge */
+      const size_t middle = (low + high) / 2;
+      if (nodes[middle].along < PetscMin(ends[0], ends[1]))
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    for (size_t l = low; l < n && nodes[l].along <= PetscMax(ends[0], ends[1]); l++)
+      if (PartOf(body, nodes[l].node) != PartOf(body, from) && IsOn(body, nodes[l].node, from, to))
+        Wrong(body,
+              "node %lld of one part of the body lies on the edge from node %lld to %lld of another, and does not hang "
+              "together with it; merge the mesh (in Gmsh: BooleanFragments before meshing)",
+              (long long)TagOf(body, nodes[l].node), (long long)TagOf(body, from), (long long)TagOf(body, to));
+  }
+}
+
+static PetscErrorCode CheckParts(Body *body)
+{
+  PetscBool several = PETSC_FALSE;
   Projection *nodes;
+  size_t n = 0;
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < body->file.nodes.count; k++) body->part[k] = k;
@@ -263,28 +322,13 @@ static PetscErrorCode CheckParts(Body *body)
       body->part[PartOf(body, element->node[i])] = PartOf(body, element->node[0]);
   }
   for (size_t k = 0; k < body->file.nodes.count; k++) {
-    const double *X = NodeOf(body, k)->X;
-
-    if (body->vertex[k] >= 0) nodes[n++] = (Projection){X[0] * cos(angle) + X[1] * sin(angle), k};
+    if (body->vertex[k] < 0) continue;
+    nodes[n++] = (Projection){Along(NodeOf(body, k)), k};
+    if (PartOf(body, k) != PartOf(body, nodes[0].node)) several = PETSC_TRUE;
   }
   qsort(nodes, n, sizeof(*nodes), CompareProjections);
-  for (size_t k = 0; k < n; k++)
-    for (size_t l = k + 1; l < n && nodes[l].along - nodes[k].along <= 2 * NEAR * body->size; l++) {
-      const double *X = NodeOf(body, nodes[k].node)->X, *Y = NodeOf(body, nodes[l].node)->X;
-
-      if (PetscMax(PetscAbsReal(X[0] - Y[0]), PetscAbsReal(X[1] - Y[1])) > NEAR * body->size ||
-          PartOf(body, nodes[k].node) == PartOf(body, nodes[l].node))
-        continue;
-      if (!twice++) first[0] = nodes[k].node, first[1] = nodes[l].node;
-      break;
-    }
+  if (several) CheckTouching(body, n, nodes);
   PetscCall(PetscFree(nodes));
-  if (twice)
-    Wrong(body,
-          "%zu nodes of one part of the body lie on nodes of another, such as %lld on %lld, and do not hang together "
-          "with "
-          "them; merge the mesh (in Gmsh: Coherence, or BooleanFragments before meshing)",
-          twice, (long long)TagOf(body, first[0]), (long long)TagOf(body, first[1]));
   PetscFunctionReturn(0);
 }
 

@@ -124,6 +124,10 @@ TEST(parts_that_lie_on_each_other_are_refused)
                           "5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1.0000000001 1 0\n$EndNodes\n"
                           "$Elements\n2\n1 3 2 5 5 1 2 3 4\n2 3 2 5 5 5 6 7 8\n$EndElements\n",
                 "2 nodes of one part of the body lie on nodes of another");
+  AssertRefused(FORMAT_22 "$Nodes\n8\n1 0 0 0\n2 4 0 0\n3 4 1 0\n4 0 1 0\n"
+                          "5 1 1 0\n6 2 1 0\n7 2 2 0\n8 1 2 0\n$EndNodes\n"
+                          "$Elements\n2\n1 3 2 5 5 1 2 3 4\n2 3 2 5 5 5 6 7 8\n$EndElements\n",
+                "node 5 of one part of the body lies on the edge from node 3 to 4 of another");
   AssertSound(FORMAT_22 "$Nodes\n7\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 1 0 0\n6 2 0 0\n7 2 1 0\n$EndNodes\n"
                         "$Elements\n2\n1 3 2 5 5 1 2 3 4\n2 3 2 5 5 5 6 7 3\n$EndElements\n");
 }
