@@ -37,7 +37,11 @@ int main(int argc, char *argv[])
 {
   PetscErrorCode ierr;
 
-  if (argc != 3 || LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (argc != 3) {
+    fprintf(stderr, "usage: %s SCENE.yaml DB.h5, such as tests/scenes/tissue-block.yaml DB.h5\n", argv[0]);
+    return 1;
+  }
+  if (LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   ierr = Run(argv[1], argv[2]);
   if (ierr) fprintf(stderr, "%s\n", LamErrorMessage());
   return ierr || PetscFinalize() ? 1 : 0;

@@ -96,7 +96,11 @@ int main(int argc, char *argv[])
 {
   PetscErrorCode ierr;
 
-  if (argc != 2 || LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (argc != 2) {
+    fprintf(stderr, "usage: %s SCENE.yaml, such as tests/scenes/tissue-block.yaml\n", argv[0]);
+    return 1;
+  }
+  if (LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   ierr = Run(argv[1]);
   if (ierr) fprintf(stderr, "%s\n", LamErrorMessage());
   return ierr || PetscFinalize() ? 1 : 0;

@@ -34,8 +34,12 @@ int main(int argc, char *argv[])
 {
   PetscErrorCode ierr;
 
-  if (argc != 2 || LamErrorsKeep() || PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  if (argc != 2) {
+    fprintf(stderr, "usage: %s SCENE.yaml, such as tests/scenes/shear-contact.yaml\n", argv[0]);
+    return 1;
+  }
+  if (LamErrorsKeep()) return 1; /* and no PetscInitialize: the material starts PETSc, for this rank alone */
   ierr = Run(argv[1]);
   if (ierr) fprintf(stderr, "%s\n", LamErrorMessage());
-  return ierr || PetscFinalize() ? 1 : 0;
+  return ierr ? 1 : 0;
 }

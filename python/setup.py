@@ -1,4 +1,5 @@
-"""Puts the shared library and the program, which ./setup.sh has built, and the header of its functions into the package."""
+"""Puts the shared library and the program, which ./setup.sh has built, the header of its functions and the tissues of
+validation into the package."""
 import shutil
 from pathlib import Path
 
@@ -16,6 +17,8 @@ class Build(build_py):
             if not (ROOT / file).is_file():
                 raise SystemExit(f"{ROOT / file} is missing: build Lamella first, by ./setup.sh")
             shutil.copy2(ROOT / file, Path(self.build_lib) / "lamella")
+        shutil.copytree(ROOT / "tests" / "scenes" / "tissues", Path(self.build_lib) / "lamella/validation/scenes/tissues",
+                        dirs_exist_ok=True)
 
 
 class WithLibrary(Distribution):

@@ -1,9 +1,9 @@
 /*
-  Method. A scene gives all of A; a database, which holds states without out-of-plane shear, all but the entries with an
-  index pair 13, 23, 31 or 32, which are NaN. With such an F they do not enter the rest of C, and are left out of the
-  sums by factors that are 0. What remains unknown of C is the stiffness against shear out of the plane: C_1313 and
-  C_2323 are set to C_1212, and C_1323 to 0: any value would do, since it multiplies no strain (a database refuses it),
-  but 0 would make a host's matrix singular where it keeps that freedom.
+  Method. A scene gives all of A, as a database does of an F with a small out-of-plane shear; of an F without, a database gives
+  all but the entries with an index pair 13, 23, 31 or 32, which are NaN. With such an F they do not enter the rest of
+  C, and are left out of the sums by factors that are 0. What remains unknown of C is the stiffness against shear out of
+  the plane: C_1313 and C_2323 are set to C_1212, and C_1323 to 0: any value would do, since it multiplies no strain, but
+  0 would make a host's matrix singular where it keeps that freedom.
 */
 #include "stress.h"
 #include <math.h>

@@ -12,11 +12,19 @@ that has no answer is none: `converged` is False, and `reason` says why.
 import json
 import os
 import re
+import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+_missing = [name for name in ("numpy", "cffi") if not find_spec(name)]
+if _missing:
+    raise ImportError(f"lamella needs {' and '.join(_missing)}, not installed for {sys.executable}: run pip install "
+                      f"{' '.join(_missing)} with it, or use Debian's /usr/bin/python3, for which ./setup.sh installs "
+                      f"{' and '.join(f'python3-{name}' for name in _missing)}", name=_missing[0])
+
+import numpy as np  # noqa: E402  (what is missing has been reported)
 from numpy.typing import ArrayLike
 
 from ._library import DTYPE, MEMBERS, NAMES, Error, InputError, call, check, ffi, library, name_of, own

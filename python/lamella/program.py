@@ -47,10 +47,12 @@ class Run:
 
 
 def _program() -> str:
-    for path in (os.environ.get("LAMELLA_PROGRAM"), library_folder / "lamella", shutil.which("lamella")):
+    installed = Path(__file__).resolve().parents[4] / "bin" / "lamella"  # with the package in share/lamella/python
+    for path in (os.environ.get("LAMELLA_PROGRAM"), library_folder / "lamella", installed, shutil.which("lamella")):
         if path and Path(path).is_file():
             return str(path)
-    raise ImportError("no program lamella: tell it by the variable LAMELLA_PROGRAM")
+    raise ImportError(f"no program lamella in {library_folder}, {installed.parent} or PATH: build Lamella (./setup.sh), or "
+                      "name the program by the variable LAMELLA_PROGRAM")
 
 
 def environment(**changes: str) -> dict[str, str]:

@@ -26,7 +26,11 @@ class Result:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        import h5py  # only where files are read
+        try:
+            import h5py  # only where files are read
+        except ModuleNotFoundError:
+            raise ImportError(f"{path}: reading it needs h5py: pip install h5py, or Debian's python3-h5py",
+                              name="h5py") from None
         try:
             self.file = h5py.File(path, "r")
         except OSError as error:

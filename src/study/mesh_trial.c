@@ -267,7 +267,7 @@ static PetscErrorCode ErrorOf(const LamScene *scene, PetscInt number, Mesh mesh,
 
     PetscCall(LamRVEStateReset(cell.rve, cell.state));
     PetscCall(LamRVESolve(cell.rve, &truth->loads.at[k], cell.state, &response));
-    *error = LamResponseHasFields(&response) ? PetscMax(*error, Error(scene, response.P, truth->P[k])) : PETSC_INFINITY;
+    *error = LamResponseHasFields(&response) ? PetscMax(*error, Error(scene, response.P, truth->P[k])) : INFINITY;
   }
   PetscCall(CellDestroy(&cell));
   PetscFunctionReturn(0);

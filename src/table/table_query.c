@@ -370,7 +370,7 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
 
   PetscFunctionBeginUser;
   *n = 0;
-  if (error) *error = PETSC_INFINITY;
+  if (error) *error = INFINITY; /* PETSC_INFINITY is finite */
   PetscCall(LamResponseInit(load, &response));
   if (!Locate(table, load, &place, &response)) PetscFunctionReturn(0);
   if (Fill(table, &place, &response)) {

@@ -139,3 +139,10 @@ fi
 # usage
 expect 1 "$lamella" build s.yaml
 expect 4 "$lamella" build s.yaml -d no/such/folder/a.h5
+
+# of a table that answers nothing yet there is no error to report
+tissue mesh='along: 2, through: 1' >few.yaml <<'YAML'
+sample: {stretch: {min: -0.1, max: 0.3}, turgor: {min: 0 MPa, max: 0.02 MPa}, count: 6}
+YAML
+expect 0 -o 'answered *0.0 %' "$lamella" build few.yaml -d few.h5 --quiet
+! grep -q 'inf' out.txt || fail "an infinite error: $(cat out.txt)"

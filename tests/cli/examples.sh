@@ -35,3 +35,9 @@ grep -q '^load 1.00: [1-6] Newton iterations' law.txt || fail "a law of one's ow
 
 "$examples/example_state" missing.yaml >missing.txt 2>&1 && fail "a scene that is missing"
 grep -q '^missing.yaml: ' missing.txt && ! grep -q 'PETSC ERROR' missing.txt || fail "the words of an error: $(cat missing.txt)"
+
+for name in state database fe2_block own_law; do
+  expect 1 -e "^usage: .*example_$name SCENE.yaml.*such as tests/scenes/" "$examples/example_$name"
+  scene=$(sed 's/.*such as \([^ ]*\).*/\1/' err.txt)
+  [ -f "$source/$scene" ] || fail "example_$name names $scene, which is not there"
+done

@@ -172,3 +172,28 @@ for settings in '{"scene": "tissue.yaml", "database": "x.h5"}' '{"scen": "tissue
   echo "$settings" >lamella-micro.json
   expect 1 -e 'lamella-micro.json: \|none.yaml' "$python" -c 'import lamella_micro; lamella_micro.tissue()'
 done
+
+# the example: data of both configurations are those of preCICE's, and of the classes; the tissue is found
+cp "$source"/integrations/micro_manager/example/* .
+cp ../tissue.h5 .
+expect 0 "$python" - <<'PYTHON'
+import json
+import xml.etree.ElementTree as xml
+from common import *
+text = open("precice-config.xml").read().replace("data:", "data-").replace("m2n:", "").replace("export:", "").replace("scheme:", "scheme-")
+root = xml.fromstring(text.split("?>")[1])
+kinds = {d.get("name"): d.tag[5:] for d in root if d.tag in ("data-vector", "data-scalar")}
+names = lambda path, key="name": {e.get(key) for e in root.findall(path)}
+manager, macro = (f"participant[@name='{name}']" for name in ("Micro-Manager", "macro"))
+own = {"active_state", "active_steps", "model_resolution"}
+out = model("lamella_database")(0).solve(data(F(0.02), turgor=1e4), 0.1)
+assert {kind + str(np.shape(out[name])) for name, kind in kinds.items() if name in out} == {"vector(3,)", "scalar()"}
+assert names("mesh/use-data") == set(kinds) and names("mesh/use-data") - own == names(macro + "/write-data") | names(macro + "/read-data")
+assert names("coupling-scheme-serial-implicit/exchange", "data") == set(kinds) - own
+for file in ("micro-manager-config.json", "micro-manager-models.json"):
+    config = json.load(open(file))
+    coupling, models = config["coupling_params"], config.get("micro_file_names", [config.get("micro_file_name")])
+    assert set(coupling["read_data_names"]) == names(manager + "/read-data") == names(macro + "/write-data")
+    assert set(coupling["write_data_names"]) == names(manager + "/write-data") - own == set(out) == names(macro + "/read-data")
+    assert all(model(name) for name in models)
+PYTHON

@@ -117,29 +117,38 @@ cp "$source/docs/reference/python.md" .
 
 # installed by pip, away from the sources
 if "$python" -c 'import setuptools, pip, venv, wheel' 2>/dev/null; then
-  mkdir -p sources/build sources/include/lamella
+  mkdir -p sources/build sources/include/lamella sources/tests/scenes
   cp -r "$source/python" sources
+  cp -r "$source/tests/scenes/tissues" sources/tests/scenes
   cp "$source/include/lamella/bind.h" sources/include/lamella
   cp "$lamella" "$LAMELLA_LIBRARY/liblamella.so" sources/build
   "$python" -m venv --system-site-packages installed
-  expect 0 installed/bin/pip install --no-build-isolation --no-deps --quiet ./sources/python
+  expect 0 installed/bin/pip install --no-build-isolation --no-index --quiet ./sources/python # Debian's packages suffice
   env -u PYTHONPATH -u LAMELLA_LIBRARY installed/bin/python -c '
 import lamella
 assert "installed" in lamella.__file__
 assert lamella.RVE("tests/scenes/shear-bonded.yaml").solve([[1, 0], [0, 1]], 2e4).converged
 import pathlib
 assert (pathlib.Path(lamella.__file__).parent / "py.typed").exists()
+import lamella.cells, lamella.plot, lamella.tissue, lamella.validation as validation
+assert "installed" in str(validation.TISSUES) and len(list(validation.TISSUES.glob("*.yaml"))) >= 6
 assert lamella.run("check", "tests/scenes/shear-bonded.yaml").complete' || fail "the installed package"
 fi
 
-# beside mpi4py and petsc4py, where they are installed, also on ranks of a job; what it starts is none of them
+# without what it needs
+"$python" -m venv --without-pip bare
+expect 1 -e "^ImportError: lamella needs numpy and cffi, not installed for .*bare/bin/python: run pip install numpy cffi" bare/bin/python -c 'import lamella'
+
+# next to mpi4py and petsc4py, where they are installed, also on ranks of a job; what it starts is none of them
 if "$python" -c 'import mpi4py, petsc4py' 2>/dev/null; then
   cat >beside.py <<'PYTHON'
 import sys
 from mpi4py import MPI
+if MPI.COMM_WORLD.size > 1:
+    import petsc4py.PETSc
 import lamella
 import numpy as np
-assert lamella.quantity("1 mm") == 1e-3  # has started PETSc
+assert lamella.quantity("1 mm") == 1e-3  # has started PETSc, or finds it
 import petsc4py
 petsc4py.init(sys.argv)
 from petsc4py import PETSc
