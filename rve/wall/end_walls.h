@@ -3,7 +3,7 @@
 
   Each cell of the length L has two, as thick as its other walls, so that a volume has 2 t/L of them. They are in plane
   stress: their thickness follows from the constant volume of the wall, W(C11, C22, C12) with C33 = 1/(C11 C22 - C12^2).
-  Fibres lie in the sheet in all directions alike: the mean over LAM_POINTS angles, exact for quadratic fibres.
+  Fibres lie in the sheet in all directions alike: their mean is converged to rounding, with `fibres: tension` too.
 */
 #ifndef LAM_RVE_END_WALLS_H
 #define LAM_RVE_END_WALLS_H
