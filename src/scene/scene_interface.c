@@ -18,9 +18,9 @@ static const LamKey interface_keys[] = {
              "only with law `contact`."},
     {NAME_OF("rve.interface.sharpness", LamSharpnessNames, LAM_SHARPNESS_COUNT), INTO(LamScene, micro.sharpness),
      .default_value = "auto",
-     .help = "Law of contact: `exact`: gaps are never negative; a state that it does not have is told with the smooth "
-             "law; `smooth`: contact pressure falls over a small gap, so that responses are smooth in F; "
-             "`auto`: `exact`, but `smooth` in `fe2` with law `lamella`. Not with law `bonded`."},
+     .help = "Law of contact: `exact`: gaps are never negative; where it has no state the smooth law is used; "
+             "`smooth`: contact pressure falls over a small gap, so that responses are smooth in F; "
+             "`auto`: with law `contact` `exact`, with law `lamella` `smooth`. Not with law `bonded`."},
     {LENGTH("rve.interface.width", "um"), INTO(LamScene, micro.contact_width), ABOVE(0),
      .default_words = "0.003 of the apothem", .example = "0.5 um",
      .help = "Gap at which contact pressure has fallen to none; only with sharpness `smooth`. `contact_error` of "

@@ -5,18 +5,6 @@
 #include "clock.h"
 #include "turgor_stretch.h"
 
-/*
-  With law `lamella` a response is of the exact law of contact at one F and of the smooth one beside it, as a state of
-  the exact law is found or not, and stress jumps by 1e-3 between them: Newton's method of the body then takes four
-  times as many iterations, or does not end. Where the scene leaves the choice open, all states are of the smooth law.
-*/
-static void ChooseContact(LamMicrostructure *micro)
-{
-  if (micro->interface != LAM_INTERFACE_LAMELLA || micro->sharpness != LAM_SHARPNESS_AUTO) return;
-  micro->sharpness = LAM_SHARPNESS_SMOOTH;
-  micro->contact_width = LAM_USUAL_WIDTH;
-}
-
 PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
 {
   PetscFunctionBeginUser;
@@ -32,8 +20,6 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
              "%s: rve.wall.relaxation: the steps of `lamella fe2` take no time, on which walls with memory depend; "
              "choose `lamella process`",
              run->scene->path);
-  ChooseContact(&run->scene->micro);
-  for (PetscInt r = 0; r < run->scene->region_count; r++) ChooseContact(&run->scene->regions[r].micro);
   if (LamIsFirst(run->comm)) LamWarnOfTurgor(&run->reporter, run->scene);
   PetscCall(LamMacroCreate(run->comm, &run->macro));
   PetscCall(LamMacroSetScene(run->macro, run->scene));

@@ -31,3 +31,20 @@ PYTHON
 fi
 expect 0 "$lamella" plot --dpi 40 torn.h5 --state last -o torn.png
 expect 0 "$lamella" plot --dpi 40 torn.h5 --strip -o torn.svg
+
+# of one law of contact, the smooth one, unless the scene asks for the other: a held F is a held state
+held() { # SHARPNESS
+  tissue interface="law: lamella, strength: 0.02 MPa, fracture_energy: 0.1 J/m^2$1" <<'YAML'
+load: [{ramp: {to: [[1.05, 0.15], [0, 1]], steps: 6}}, {F: [[1.05, 0.15], [0, 1]]}]
+process: {output: 1 h, program: [{for: 1 h, F: [[1.05, 0.15], [0, 1]]}, {for: 1 h}]}
+YAML
+}
+held '' >held.yaml
+held ', sharpness: exact' >exact.yaml
+for command in "rve --no-estimate" process; do
+  expect 0 "$lamella" $command held.yaml --json
+  sed -i '/"F"/!d' out.txt
+  [ "$(grep -c '"contact_width": 0.003' out.txt)" = "$(wc -l <out.txt)" ] || fail "$command: $(cat out.txt)"
+done
+expect 0 "$lamella" rve exact.yaml --no-estimate --json
+grep -q '"contact_width": 0' out.txt || fail "the exact law is not used where it is chosen"
