@@ -164,6 +164,12 @@ static json_t *Relaxation(const LamRelaxation *relaxation)
   return terms;
 }
 
+/* Whether the scene's body is around an axis, so that F33 is the hoop stretch. */
+static PetscBool IsAround(const LamScene *scene)
+{
+  return (PetscBool)(scene->has_macro && scene->macro.symmetry == LAM_AXISYMMETRIC);
+}
+
 static PetscErrorCode PrintObject(const Check *check)
 {
   const LamPlan *plan = &check->plan;
@@ -174,12 +180,12 @@ static PetscErrorCode PrintObject(const Check *check)
 
   PetscFunctionBeginUser;
   o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
-                "plane_strain", 1, "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1], "interface",
-                LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law], "turgor",
-                LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy", LamJSONReal(scene->accuracy),
-                "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns, "seconds_per_assembly",
-                LamJSONReal(check->cost.assembly), "seconds_per_state", LamJSONReal(check->cost.state), "memory_mb",
-                LamJSONReal(check->cost.memory));
+                "plane_strain", !IsAround(scene), "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1],
+                "interface", LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law],
+                "turgor", LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy",
+                LamJSONReal(scene->accuracy), "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns,
+                "seconds_per_assembly", LamJSONReal(check->cost.assembly), "seconds_per_state",
+                LamJSONReal(check->cost.state), "memory_mb", LamJSONReal(check->cost.memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
   json_object_set_new(o, "rounding", /* a bound of that of the tangent; a warning if it is beyond the accuracy */
                       json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
@@ -340,7 +346,7 @@ static void PrintModel(const Check *check)
   const PetscReal MPa = scene->scales.stress * 1e-6;
 
   printf("%-12s %s\n", "scene", scene->path);
-  printf("%-12s plane strain, ", "model");
+  printf("%-12s %s, ", "model", IsAround(scene) ? "axisymmetric, cells along the hoop" : "plane strain");
   if (micro->tissue)
     printf("%s of %" PetscInt_FMT " cells of any shape, mean apothem %.4g um", micro->is_patch ? "a patch" : "periods",
            micro->cells[0], (double)(1e6 * scene->scales.length));
@@ -416,8 +422,7 @@ static void PrintMacro(const Check *check)
     printf("elements of %s", macro->gmsh);
   else
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
-  printf(", %s%" PetscInt_FMT " load steps%s\n", macro->symmetry == LAM_AXISYMMETRIC ? "axisymmetric, " : "",
-         macro->steps, macro->inflate ? " after inflation" : "");
+  printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
   PrintRegions(check);
   if (plan->macro_states)
     PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->cost.point);

@@ -11,6 +11,7 @@
 #include "build_run.h"
 #include "mesh_choice.h"
 #include "rounding.h"
+#include "turgor_stretch.h"
 #include "clock.h"
 #include <string.h>
 
@@ -166,6 +167,7 @@ PetscErrorCode LamBuildPrepare(LamBuild *b, const char scene_path[])
   PetscCall(LamRefuseHistory(scene_path, &b->scene->micro, "a table", ""));
   PetscCall(LamChooseMesh(b->scene, &trial));
   LamWarnOfMesh(PETSC_COMM_WORLD, &b->reporter, b->scene, &trial);
+  if (LamIsFirst(PETSC_COMM_WORLD)) LamWarnOfTurgor(&b->reporter, b->scene);
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &b->reporter, &b->scene->micro, b->scene->accuracy));
   PetscFunctionReturn(0);
 }

@@ -7,12 +7,18 @@
 
 #include "study.h"
 
-/* Stretch of the walls of tissue that is free of stress under its turgor, by the balance of a section; the largest one
-   if cells differ. Infinite: beyond 10, or none is in balance. */
-PetscReal LamTurgorStretch(const LamMicrostructure *micro, PetscReal turgor);
-#define LAM_TURGOR_TEXT 480
-/* One sentence if the walls of the scene, or of a region, are stretched by more than half by the largest turgor of a
-   block; else empty. Fields of turgor are not evaluated. */
+/* What turgor does to the walls of tissue that is free of stress, by the balance of sections; the largest of all cells.
+   A stretch is infinite beyond 10, or where none is in balance. */
+typedef struct {
+  PetscReal along;   /* stretch along the walls, in the section */
+  PetscReal axial;   /* along the cells' axis; 1 in plane strain */
+  PetscReal tension; /* Cauchy stress along the walls plus turgor */
+} LamInflated;
+LamInflated LamInflatedTissue(const LamMicrostructure *micro, PetscReal turgor, PetscBool free_axis);
+#define LAM_TURGOR_TEXT 520
+/* One sentence if the largest turgor of a block would stretch free tissue of the scene, or of a region, by more than
+   half in any direction, or if the tissue is inflated and its turgor puts a tension above their strength on the walls;
+   else empty. Fields of turgor are not evaluated. */
 void LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT]);
 /* Reports it. On rank 0. */
 void LamWarnOfTurgor(const LamReporter *reporter, const LamScene *scene);

@@ -128,3 +128,37 @@ map:
   y: {quantity: shear, from: 0, to: 0.01, points: 2}
 YAML
 warned map map.yaml 'map.yaml: map: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %' -o map.h5
+# and of a database
+printf 'sample: {stretch: {min: 0, max: 0.01}, count: 1}\n' >>tight.yaml
+warned build tight.yaml 'tight.yaml:6:40: rve.turgor.pressure: 0.4 MPa: stretches the walls' -d tight.h5
+# the strength of the walls
+{ inflated '0.1 MPa' && printf 'strength: {wall: 0.5 MPa}\n'; } >weak.yaml
+warned rve weak.yaml 'weak.yaml:6:40: rve.turgor.pressure: 0.1 MPa: puts a mean tension of about 1.02 MPa on the walls of free tissue, strength.wall is 0.5 MPa; check'
+sed 's/inflate: true/F: [[1, 0], [0, 1]]/' weak.yaml >held.yaml
+silent rve held.yaml
+# tissue that is free along the cells' axis, too: that of a body around an axis, where it is the hoop
+slender() { # TURGOR
+  tissue cell='apothem: 75 um, wall_thickness: 5.025 um' wall='law: fibre_mooney_rivlin, C1: 1 MPa, C2: 0.1 MPa, C4: 10 MPa' \
+    turgor="mode: prescribed, pressure: $1" mesh='along: 4, through: 1'
+}
+slender '0.2 MPa' >solid.yaml <<'YAML'
+load: [{F: [[free, 0, 0], [0, free, 0], [0, 0, free]], P: [[0 MPa, x, x], [x, 0 MPa, x], [x, x, 0 MPa]]}]
+accuracy: 0.1
+YAML
+warned rve solid.yaml 'solid.yaml:6:40: rve.turgor.pressure: 0.2 MPa: stretches free tissue by about 102 % along the cells. axis; check'
+/usr/bin/python3 -c 'import json
+F33 = json.loads(open("out.txt").readline())["F"][8]
+assert abs((F33 - 1) / 1.02 - 1) < 0.15, F33' || fail "solved tissue stretches otherwise along its axis"
+slender '0.3 MPa' >around.yaml <<'YAML'
+macro:
+  symmetry: axisymmetric
+  mesh: {box: [5 mm, 5 mm], elements: [1, 1]}
+  boundary: [{on: bottom, symmetry: true}, {on: top, displacement: [free, -0.1 mm]}]
+  steps: 1
+YAML
+expect 0 -o '^model *axisymmetric' -o '^warning .*0.3 MPa: stretches free tissue by about 372 % along' "$lamella" check around.yaml
+sed '/symmetry: axisymmetric/d; s/free, -0.1/0 mm, -0.1/' around.yaml >plane.yaml
+expect 0 -o '^model *plane strain' "$lamella" check plane.yaml
+if grep -q '^warning' out.txt; then fail "plane strain is judged along its axis: $(cat out.txt)"; fi
+sed 's/0.3 MPa/0.17 MPa/' around.yaml >hoop.yaml
+warned fe2 hoop.yaml 'hoop.yaml:6:40: rve.turgor.pressure: 0.17 MPa: stretches free tissue by about [67][0-9] % along' --response direct
