@@ -92,6 +92,11 @@ LAM_EXPORT PetscErrorCode LamRVEStateDestroy(LamRVEState *state);
 LAM_EXPORT PetscErrorCode LamRVEStateSize(LamRVEState state, size_t *bytes);
 LAM_EXPORT PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes);
 LAM_EXPORT PetscErrorCode LamRVEStateUnpack(const void *bytes, LamRVEState state);
+/*
+  Energy of the fluid of cells that have burst, per V0: the part of a response's `work` that no load has done. The loads'
+  own ledger is (work - spilt) = (stored - spilt) + dissipated + released.
+*/
+LAM_EXPORT PetscErrorCode LamRVEStateGetSpilt(LamRVEState state, PetscReal *spilt);
 
 /*
   Solves for the equilibrium at `load`, starting from `state`, which is replaced by the solution. If none is found the

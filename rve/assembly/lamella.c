@@ -378,6 +378,7 @@ static void Empty(LamRVE rve, const LamLoad *load, PetscInt cell)
 
   LamLumenAreas(rve, rve->y, rve->seal.area);
   layer->work -= FluidEnergy(rve, load, cell) / rve->mesh.V0;
+  layer->spilt -= FluidEnergy(rve, load, cell) / rve->mesh.V0;
   layer->juice += load->F[8] * rve->seal.area[cell] / rve->mesh.V0;
   layer->burst[cell] = PETSC_TRUE;
   if (rve->seal.closed) rve->y[rve->ndof + cell] = 0.0;
@@ -439,6 +440,7 @@ void LamLayerTake(LamRVE rve, const LamRVEState state)
   layer->released = state->released;
   layer->work = state->work;
   layer->juice = state->juice;
+  layer->spilt = state->spilt;
   (void)PetscArraycpy(layer->burst, state->burst, state->cells);
   for (PetscInt p = 0; p < layer->count; ++p) LamBondTake(&state->history[p], &layer->bond[p]);
   FindHeldHats(rve);
@@ -469,6 +471,7 @@ void LamLayerKeep(LamRVE rve, const LamLoad *load, LamRVEState state)
   state->released = rve->layer->released;
   state->work = rve->layer->work;
   state->juice = rve->layer->juice;
+  state->spilt = rve->layer->spilt;
   (void)PetscArraycpy(state->burst, rve->layer->burst, state->cells);
   LamLayerVisitPoints(rve, load->F, rve->y, KeepBond, &keeping);
 }

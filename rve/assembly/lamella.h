@@ -22,16 +22,16 @@ typedef struct {
 } LamEdgeNodes;
 
 typedef struct {
-  PetscInt between;                       /* points between cells: those of edge e of face f begin at LAM_EDGE_POINTS (f
-                                             along + e) */
-  PetscInt count;                         /* and all; those of edge m from the lumen of cut k begin at between +
-                                             LAM_EDGE_POINTS (k through + m) */
-  LamEdgeNodes *nodes;                    /* [edge] */
-  LamBond *bond;                          /* [count] with the history at the start of the step */
-  PetscReal *weight;                      /* [count] reference length */
-  PetscBool secant;                       /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
-  PetscReal toughness[2];                 /* energy of fracture in tension, of the lamella and of all cuts, per V0 */
-  PetscReal spent, released, work, juice; /* until the start of the step, as in the state */
+  PetscInt between;       /* points between cells: those of edge e of face f begin at LAM_EDGE_POINTS (f
+                             along + e) */
+  PetscInt count;         /* and all; those of edge m from the lumen of cut k begin at between +
+                             LAM_EDGE_POINTS (k through + m) */
+  LamEdgeNodes *nodes;    /* [edge] */
+  LamBond *bond;          /* [count] with the history at the start of the step */
+  PetscReal *weight;      /* [count] reference length */
+  PetscBool secant;       /* the tangent is that of fixed omega, an upper bound (cohesive.h) */
+  PetscReal toughness[2]; /* energy of fracture in tension, of the lamella and of all cuts, per V0 */
+  PetscReal spent, released, work, juice, spilt; /* until the start of the step, as in the state */
   PetscInt (*first)[LAM_EDGE_PAIRS]; /* [edge] of nodes i <= j, row by row: first entry of their classes in the matrix
                                         in use; -1: prescribed */
   PetscBool *torn;  /* [cut] cuts broken through at the start of the step, or by which a cell bursts in it;

@@ -49,6 +49,7 @@ struct LamRVEState_s {
   LamBondHistory *history;   /* [points] */
   PetscReal spent, released; /* energies per V0 so far: dissipated, lost in jumps */
   PetscReal juice;           /* volume per V0 of the lumens of burst cells, when they burst */
+  PetscReal spilt;           /* work per V0 that `work` counts for their fluid, which no load has done */
   PetscInt cells;            /* of tissue whose walls tear, else 0 */
   PetscBool *burst;          /* [cells] */
   /* walls with memory only */

@@ -3,7 +3,7 @@
 */
 #include "solve.h"
 
-#define MOST_PARTS 18
+#define MOST_PARTS 19
 
 /* The data of a state, which are copied or packed one after another. */
 typedef struct {
@@ -27,6 +27,7 @@ static PetscInt FindParts(LamRVEState s, Part parts[MOST_PARTS])
                                 {&s->released, s->points ? sizeof(s->released) : 0},
                                 {&s->work, s->points || s->pairs ? sizeof(s->work) : 0},
                                 {&s->juice, s->points ? sizeof(s->juice) : 0},
+                                {&s->spilt, s->cells ? sizeof(s->spilt) : 0},
                                 {s->burst, (size_t)s->cells * sizeof(*s->burst)},
                                 {s->past, (size_t)s->pairs * sizeof(*s->past)},
                                 {&s->ledger, s->pairs ? sizeof(s->ledger) : 0},
@@ -58,6 +59,13 @@ PetscErrorCode LamRVEStatePack(LamRVEState state, void *bytes)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < count; to += parts[k++].bytes) PetscCall(PetscMemcpy(to, parts[k].at, parts[k].bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamRVEStateGetSpilt(LamRVEState state, PetscReal *spilt)
+{
+  PetscFunctionBeginUser;
+  *spilt = state->spilt;
   PetscFunctionReturn(0);
 }
 
@@ -93,6 +101,7 @@ PetscErrorCode LamCopyHistory(LamRVEState from, LamRVEState to)
   to->released = from->released;
   to->work = from->work;
   to->juice = from->juice;
+  to->spilt = from->spilt;
   PetscCall(PetscArraycpy(to->burst, from->burst, to->cells));
   PetscFunctionReturn(0);
 }
@@ -144,7 +153,7 @@ PetscErrorCode LamRVEStateReset(LamRVE rve, LamRVEState state)
   for (PetscInt k = 0; k < LAM_ENERGY_COUNT; ++k) state->energy[k] = NAN;
   for (PetscInt p = 0; p < state->points; ++p) state->history[p] = LAM_UNDAMAGED;
   for (PetscInt c = 0; c < state->cells; ++c) state->burst[c] = PETSC_FALSE;
-  state->spent = state->released = state->work = state->juice = 0.0;
+  state->spent = state->released = state->work = state->juice = state->spilt = 0.0;
   PetscCall(PetscArrayzero(state->past, state->pairs));
   state->ledger = (LamMemoryLedger){0};
   if (!rve->layer && !rve->memory) PetscFunctionReturn(0);

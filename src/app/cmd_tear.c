@@ -11,6 +11,8 @@
 
 enum { MOST_TURGORS = 32, STEPS = 40 };
 
+#define IMBALANCE 0.02 /* of the energies of a curve, over what is spent: more is worth a word */
+
 typedef struct {
   LamConsole console; /* the reporter's ctx; first */
   const char *scene_path, *out_path, *turgor_text, *modes, *separation_text;
@@ -115,6 +117,10 @@ static void PrintReadings(const LamTearCurve *curve, Units units)
   printf("  energy %.4g J/m^2", (double)(r.energy * units.energy));
   if (isfinite(r.share)) printf(", %.3g %% of it released in jumps", (double)(100 * r.share));
   printf("; work of the traction %.4g J/m^2\n", (double)(last->work * units.energy));
+  if (fabs(r.imbalance) > IMBALANCE * r.energy)
+    printf("  warning: the energies are %.2g %% of that from the work: a jump was not seen, or steps are too long; give "
+           "more --steps\n",
+           (double)(100 * r.imbalance / r.energy));
   if (last->burst > 0 || last->walls > 0)
     printf("  walls have spent %.4g J/m^2 of it; %.3g %% of the cells have burst\n",
            (double)(last->walls * units.energy), (double)(100 * last->burst));
@@ -163,17 +169,18 @@ static PetscErrorCode PrintCurveObject(const LamTear *tear, const LamTearCurve *
   const Units units = UnitsOf(tear);
   json_t *o = json_pack("{s:s, s:o, s:s, s:I, s:o}", "mode", LamTearModeNames[curve->mode], "turgor",
                         LamJSONReal(curve->turgor * units.MPa), "end", LamTearEndNames[curve->end], "states",
-                        (json_int_t)curve->count, "stretches", LamJSONReals(2, curve->F0, 1));
+                        (json_int_t)r.states, "stretches", LamJSONReals(2, curve->F0, 1));
 
   PetscFunctionBeginUser;
   if (curve->reason[0]) json_object_set_new(o, "reason", json_string(curve->reason));
   json_object_update_new(
-      o, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "strength", LamJSONReal(r.strength * units.MPa),
+      o, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "strength", LamJSONReal(r.strength * units.MPa),
                    "separation_at_peak", LamJSONReal(r.at * units.um), "stiffness",
                    LamJSONReal(1e3 * curve->stiffness * units.MPa / units.um), "energy",
                    LamJSONReal(r.energy * units.energy), "released_share", LamJSONReal(r.share), "work",
-                   LamJSONReal(work * units.energy), "law_energy", LamJSONReal(r.law * units.energy),
-                   "straight_crack_energy", LamJSONReal(curve->straight * units.energy)));
+                   LamJSONReal(work * units.energy), "imbalance", LamJSONReal(r.imbalance * units.energy), "law_energy",
+                   LamJSONReal(r.law * units.energy), "straight_crack_energy",
+                   LamJSONReal(curve->straight * units.energy)));
   PetscCall(LamPrintJSON(json_pack("{s:o}", "curve", o)));
   PetscFunctionReturn(0);
 }

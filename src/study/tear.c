@@ -7,12 +7,20 @@
   How far a layer tears is not known before: a curve that ends in less than half of its steps, or not within them, is
   followed again with steps that fit.
 
-  Energies. Where the exact law of contact and the smooth one take turns, the stored energy of a jump and that between
-  the laws are not told apart. All states are therefore of one law: the smooth one, which knows all of them, unless the
-  scene asks for the exact one. `released` is what the work leaves when stored and dissipated energy are taken away: of
-  a state that falls twice on the way through the parts of a step it counts the fall once.
+  Energies. Where the exact law of contact and the smooth one take turns, the energy lost in a jump and that between the
+  laws cannot be separated. All states are therefore of one law: the smooth one, which has all of them, unless the scene
+  asks for the exact one. Work, stored, dissipated and released energy are each computed by themselves; `imbalance` is
+  what is left of their sum. The fluid of a cell that bursts is not stored, but lost: its potential is in `stored` as it
+  was at the burst, so that the work is that of the traction alone.
 
-  The same steps of bonded tissue, as far as the largest traction, give the elastic part of a separation.
+  A step is taken in halves, each of which ends in a state of the curve, down to 1/64, where its parts (lamella_step.c)
+  have done other work than the line between its ends, or where its work is not what its energies have become: a jump
+  lies between two states close to each other, and the kink of a stiff lamella is seen.
+
+  The same steps of bonded tissue, as far as the largest traction, give the elastic part of a separation. Where the
+  traction falls in a jump that part springs back along its own curve, and the crack opens by as much. The line from the
+  state before to that after would be above: it would spend 2 to 5 % more energy than the layer. The curve has points
+  of the fall in between.
 */
 #include "tear.h"
 #include "clock.h"
@@ -31,6 +39,10 @@ const char *const LamTearEndNames[] = {LAM_TEAR_ENDS(LAM_NAME_ENTRY)};
 #define MOST_PASSES 4   /* over a curve, to find its steps */
 #define LENGTHEN 3.0    /* of the separation from pass to pass, where the last one ended too soon */
 #define MARGIN 1.05     /* of the separation over that at which the last pass came apart */
+#define MOST_HALVINGS 6 /* of a step, as of one that jumps (lamella_step.c) */
+#define INEXACT 1e-3    /* error of the work of a step, over the work so far or the energy of a straight crack */
+#define FALL 0.125      /* share of the peak by which the traction falls from point to point in a jump: then lines */
+                        /* between them have the energy to 0.1 % */
 
 /* ---- a layer under a program ---- */
 
@@ -133,30 +145,40 @@ static PetscReal Stiffness(const Layer *layer)
 
 /* ---- a curve ---- */
 
-static PetscErrorCode AddPoint(const Layer *layer, const LamResponse *r, LamTearCurve *curve)
+/* The point of the layer's state, which has the response r. */
+static PetscErrorCode PointOf(const Layer *layer, const LamResponse *r, LamTearPoint *point)
 {
   const LamResponse *zero = &layer->zero;
   const PetscReal energy = layer->height / Area(layer), *F = r->load.F, *F0 = zero->load.F;
-  const PetscReal work = energy * (r->work - zero->work), stored = energy * (r->stored - zero->stored);
-  const PetscReal dissipated = energy * (r->dissipated - zero->dissipated);
   const PetscInt d = Driven(layer->mode);
+  PetscReal spilt, spilt0;
 
   PetscFunctionBeginUser;
+  PetscCall(LamRVEStateGetSpilt(layer->state, &spilt));
+  PetscCall(LamRVEStateGetSpilt(layer->start, &spilt0));
+  spilt -= spilt0;
+  *point = (LamTearPoint){.is_state = PETSC_TRUE,
+                          .separation = layer->height * (F[d] - F0[d]),
+                          .traction = Traction(layer, r),
+                          .crack = NAN,
+                          .dilation = layer->mode == LAM_TEAR_SHEAR ? layer->height * (F[4] - F0[4]) : 0.0,
+                          .work = energy * (r->work - zero->work - spilt),
+                          .stored = energy * (r->stored - zero->stored - spilt),
+                          .dissipated = energy * (r->dissipated - zero->dissipated),
+                          .released = energy * (r->released - zero->released),
+                          .broken = r->broken_fraction,
+                          .walls = energy * (r->dissipated_walls - zero->dissipated_walls),
+                          .burst = r->burst_fraction,
+                          .jumped = r->jumped,
+                          .F = {{F[0], F[1]}, {F[3], F[4]}}};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddPoint(const LamTearPoint *point, LamTearCurve *curve)
+{
+  PetscFunctionBeginUser;
   PetscCall(LamListGrow(curve->count, sizeof(*curve->points), &curve->capacity, &curve->points));
-  curve->points[curve->count++] =
-      (LamTearPoint){.separation = layer->height * (F[d] - F0[d]),
-                     .traction = Traction(layer, r),
-                     .crack = NAN,
-                     .dilation = layer->mode == LAM_TEAR_SHEAR ? layer->height * (F[4] - F0[4]) : 0.0,
-                     .work = work,
-                     .stored = stored,
-                     .dissipated = dissipated,
-                     .released = work - stored - dissipated,
-                     .broken = r->broken_fraction,
-                     .walls = energy * (r->dissipated_walls - zero->dissipated_walls),
-                     .burst = r->burst_fraction,
-                     .jumped = r->jumped,
-                     .F = {{F[0], F[1]}, {F[3], F[4]}}};
+  curve->points[curve->count++] = *point;
   PetscFunctionReturn(0);
 }
 
@@ -168,42 +190,71 @@ static PetscReal Peak(const LamTearCurve *curve)
   return peak;
 }
 
-/* Whether the last two states bear nothing. */
-static PetscBool IsApart(const LamTearCurve *curve)
-{
-  const LamTearPoint *last = curve->points + curve->count - 1;
-  const PetscReal least = NOTHING * Peak(curve);
-
-  return (PetscBool)(curve->count > 2 && last->traction < least && last[-1].traction < least);
-}
-
 static void EndAt(LamTearCurve *curve, const LamResponse *response)
 {
   curve->end = LamStopRequested() || response->status == LAM_OUT_OF_REACH ? LAM_TEAR_STOPPED : LAM_TEAR_UNSOLVED;
   snprintf(curve->reason, sizeof(curve->reason), "%s: %s", LamStatusNames[response->status], response->reason);
 }
 
-/* One pass: `steps` equal steps to a separation. */
+/* Error of the work between two states: that of the line less that of the layer, or that less what it has become. */
+static PetscReal WorkError(const LamTearPoint *a, const LamTearPoint *b)
+{
+  const PetscReal line = 0.5 * (a->traction + b->traction) * (b->separation - a->separation), work = b->work - a->work;
+  const PetscReal energy = b->stored - a->stored + b->dissipated - a->dissipated + b->released - a->released;
+
+  return PetscMax(fabs(line - work), fabs(work - energy));
+}
+
+/* Goes on to a separation, in halves where the line to there is not the layer's work. */
+static PetscErrorCode Advance(Layer *layer, PetscReal separation, PetscInt halvings, LamTearCurve *curve,
+                              LamResponse *response)
+{
+  const LamTearPoint before = curve->points[curve->count - 1];
+  const LamResponse last = layer->last;
+  LamTearPoint point;
+  LamRVEState from;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamRVEStateCreate(layer->rve, &from));
+  PetscCall(LamRVEStateCopy(layer->state, from));
+  PetscCall(Separate(layer, separation, response));
+  if (response->status == LAM_CONVERGED) {
+    PetscCall(PointOf(layer, response, &point));
+    if (halvings > 0 && WorkError(&before, &point) > INEXACT * PetscMax(point.work, curve->straight)) {
+      PetscCall(LamRVEStateCopy(from, layer->state));
+      layer->last = last;
+      PetscCall(Advance(layer, 0.5 * (before.separation + separation), halvings - 1, curve, response));
+      if (response->status == LAM_CONVERGED) PetscCall(Advance(layer, separation, halvings - 1, curve, response));
+    } else {
+      PetscCall(AddPoint(&point, curve));
+    }
+  }
+  PetscCall(LamRVEStateDestroy(&from));
+  PetscFunctionReturn(0);
+}
+
+/* One pass: `steps` equal steps to a separation, or until the ends of two steps bear nothing. */
 static PetscErrorCode Follow(Layer *layer, PetscReal separation, PetscInt steps, LamTearCurve *curve)
 {
+  PetscInt bare = 0;
+  LamTearPoint zero;
   LamResponse response;
 
   PetscFunctionBeginUser;
   PetscCall(Begin(layer, curve->mode));
   curve->count = 0;
   curve->end = LAM_TEAR_SEPARATION;
-  PetscCall(AddPoint(layer, &layer->zero, curve));
-  for (PetscInt k = 1; k <= steps; k++) {
-    PetscCall(Separate(layer, separation * (PetscReal)k / (PetscReal)steps, &response));
+  PetscCall(PointOf(layer, &layer->zero, &zero));
+  PetscCall(AddPoint(&zero, curve));
+  for (PetscInt k = 1; k <= steps && bare < 2; k++) {
+    PetscCall(Advance(layer, separation * (PetscReal)k / (PetscReal)steps, MOST_HALVINGS, curve, &response));
     if (response.status != LAM_CONVERGED) {
       EndAt(curve, &response);
       break;
     }
-    PetscCall(AddPoint(layer, &response, curve));
-    if (!IsApart(curve)) continue;
-    curve->end = LAM_TEAR_APART;
-    break;
+    bare = curve->points[curve->count - 1].traction < NOTHING * Peak(curve) ? bare + 1 : 0;
   }
+  if (bare == 2) curve->end = LAM_TEAR_APART;
   PetscFunctionReturn(0);
 }
 
@@ -231,8 +282,10 @@ static PetscErrorCode FollowToEnd(LamTear *tear, Layer *layer, LamTearCurve *cur
     PetscCall(Follow(layer, separation, tear->steps, curve));
     if (given > 0.0 || curve->end == LAM_TEAR_UNSOLVED || curve->end == LAM_TEAR_STOPPED) break;
     if (curve->end == LAM_TEAR_APART) {
-      if (2 * curve->count > tear->steps) break;
-      separation = MARGIN * curve->points[curve->count - 1].separation;
+      const PetscReal reached = curve->points[curve->count - 1].separation;
+
+      if (2.0 * reached > separation) break;
+      separation = MARGIN * reached;
     } else {
       if (separation >= farthest) break;
       separation = PetscMin(farthest, LENGTHEN * separation);
@@ -253,6 +306,42 @@ static PetscReal ElasticAt(PetscInt n, const PetscReal separation[], const Petsc
   return n ? NAN : 0.0;
 }
 
+/* Puts points between the states before and after a jump, on the line of their separations: what the crack has of it,
+   the elastic curve says. */
+static PetscErrorCode AddFalls(PetscReal peak, LamTearCurve *curve)
+{
+  LamTearCurve with = *curve;
+
+  PetscFunctionBeginUser;
+  with.points = NULL;
+  with.count = with.capacity = 0;
+  for (PetscInt k = 0; k < curve->count; k++) {
+    const LamTearPoint *b = &curve->points[k], *a = k ? b - 1 : b;
+    const PetscInt parts = b->jumped ? (PetscInt)ceil((a->traction - b->traction) / (FALL * peak)) : 1;
+
+    for (PetscInt j = 1; j < parts; j++) {
+      const PetscReal t = (PetscReal)j / (PetscReal)parts;
+      const LamTearPoint fall = {.separation = a->separation + t * (b->separation - a->separation),
+                                 .traction = a->traction + t * (b->traction - a->traction),
+                                 .dilation = a->dilation + t * (b->dilation - a->dilation),
+                                 .work = NAN,
+                                 .stored = NAN,
+                                 .dissipated = NAN,
+                                 .released = NAN,
+                                 .broken = NAN,
+                                 .walls = NAN,
+                                 .burst = NAN,
+                                 .F = {{NAN, NAN}, {NAN, NAN}}};
+
+      PetscCall(AddPoint(&fall, &with));
+    }
+    PetscCall(AddPoint(b, &with));
+  }
+  PetscCall(PetscFree(curve->points));
+  *curve = with;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SetCrack(Layer *bonded, LamTearCurve *curve)
 {
   const PetscReal peak = Peak(curve);
@@ -271,6 +360,7 @@ static PetscErrorCode SetCrack(Layer *bonded, LamTearCurve *curve)
     if (!(traction[n] > traction[n - 1])) break;
     n++;
   }
+  if (peak > LEAST_PEAK) PetscCall(AddFalls(peak, curve));
   for (PetscInt k = 0; k < curve->count; k++) {
     LamTearPoint *p = &curve->points[k];
 
@@ -296,7 +386,7 @@ static PetscErrorCode Tear(LamTear *tear, Layer *layer, Layer *bonded, LamTearMo
     curve.straight = tear->layer.energy / Area(layer);
     PetscCall(FollowToEnd(tear, layer, &curve));
     PetscCall(SetCrack(bonded, &curve));
-    if (curve.end != LAM_TEAR_STOPPED && !(Peak(&curve) > LEAST_PEAK)) curve.end = LAM_TEAR_TORN;
+    if (curve.count > 1 && curve.end != LAM_TEAR_STOPPED && !(Peak(&curve) > LEAST_PEAK)) curve.end = LAM_TEAR_TORN;
   } else {
     EndAt(&curve, zero);
     if (curve.end == LAM_TEAR_UNSOLVED) curve.end = LAM_TEAR_TORN;
@@ -366,7 +456,6 @@ PetscErrorCode LamTearPrepare(LamTear *tear)
   LamWarnOfTurgor(&tear->reporter, scene);
   LamWarnOfZone(PETSC_COMM_WORLD, &tear->reporter, &plan.micro, &scene->scales);
   scene->micro = plan.micro;
-  if (scene->micro.sharpness == LAM_SHARPNESS_AUTO) scene->micro.sharpness = LAM_SHARPNESS_SMOOTH;
   comm = plan.unknowns < LAM_PARALLEL_UNKNOWNS ? PETSC_COMM_SELF : PETSC_COMM_WORLD;
   PetscCall(LamSceneRVECreate(comm, scene, &tear->rve));
   bonded = *scene;
@@ -404,12 +493,14 @@ LamTearReadings LamTearRead(const LamTearCurve *curve)
       r.strength = p->traction;
       r.at = p->separation;
     }
+    r.states += p->is_state;
     if (k) r.law += 0.5 * (p->traction + p[-1].traction) * (p->crack - p[-1].crack);
   }
   const LamTearPoint *last = &curve->points[curve->count - 1];
 
   r.energy = last->dissipated + last->released;
   r.share = r.energy > 0.0 ? last->released / r.energy : NAN;
+  r.imbalance = last->work - last->stored - r.energy;
   return r;
 }
 

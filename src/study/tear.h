@@ -44,20 +44,21 @@ PetscErrorCode LamTearLayerOf(const char path[], const LamMicrostructure *micro,
 
 /* ---- tear.c ---- */
 
-/* A state of a curve. Energies per area, in (C1 + C2) a, since the tissue free of stress. */
+/* A point of a curve. Energies per area, in (C1 + C2) a, since the tissue free of stress. */
 typedef struct {
+  PetscBool is_state;   /* no: on the way down in a jump, where only separation, traction and crack are known */
   PetscReal separation; /* D = height (F22 - F0_22), in shear height (F12 - F0_12) */
   PetscReal traction;
-  PetscReal crack;    /* separation less that of bonded tissue under this traction; NaN: not known */
-  PetscReal dilation; /* height (F22 - F0_22) in shear; 0 in opening */
-  PetscReal work;     /* of the traction, by the trapezoidal rule over the parts of all steps */
-  PetscReal stored, dissipated;
-  PetscReal released; /* work - stored - dissipated: lost in jumps, and the error of the rule */
-  PetscReal broken;   /* broken_fraction of the response */
-  PetscReal walls;    /* the part of `dissipated` in walls that tear */
-  PetscReal burst;    /* burst_fraction of the response */
-  PetscBool jumped;   /* from the state before */
-  PetscReal F[2][2];  /* from the undeformed tissue */
+  PetscReal crack;                /* separation less that of bonded tissue under this traction; NaN: not known */
+  PetscReal dilation;             /* height (F22 - F0_22) in shear; 0 in opening */
+  PetscReal work;                 /* of the traction, by the trapezoidal rule over the parts of all steps */
+  PetscReal stored;               /* in walls, lamella and fluid, that of burst cells as they burst */
+  PetscReal dissipated, released; /* spent in lamella and walls; lost in jumps and bursts */
+  PetscReal broken;               /* broken_fraction of the response */
+  PetscReal walls;                /* the part of `dissipated` in walls that tear */
+  PetscReal burst;                /* burst_fraction of the response */
+  PetscBool jumped;               /* from the state before */
+  PetscReal F[2][2];              /* from the undeformed tissue */
 } LamTearPoint;
 
 typedef struct {
@@ -76,6 +77,8 @@ typedef struct {
 typedef struct {
   PetscReal strength, at; /* largest traction, and its separation */
   PetscReal energy;       /* dissipated + released in the end: the work that does not come back */
+  PetscReal imbalance;    /* work - stored - energy in the end: error of the sums, and jumps that were not seen */
+  PetscInt states;        /* points that are */
   PetscReal share;        /* of `energy` released in jumps */
   PetscReal law; /* integral of the traction over the crack's part of the separation, by lines between states */
 } LamTearReadings;

@@ -2,45 +2,91 @@
 . "$(dirname "$0")/common.sh"
 
 brittle='law: lamella, strength: 0.02 MPa, fracture_energy: 0.1 J/m^2'
-# on 6 elements along a face, which is coarse: a warning says so
-tissue interface="$brittle" mesh='along: 6, through: 1' >scene.yaml </dev/null
+# on 4 elements along a face, which is coarse: a warning says so
+tissue interface="$brittle" mesh='along: 4, through: 1' >scene.yaml </dev/null
 
-expect 0 -o 'the layer comes apart' -o '^2 curves' -e 'do not resolve' "$lamella" tear scene.yaml --turgor "0,0.02 MPa" --modes opening --steps 80 -o law.csv
-expect 0 "$lamella" tear scene.yaml --turgor "0, 20 kPa" --modes opening --steps 80 --json -o again.csv
-cmp -s law.csv again.csv || fail "the table depends on what is printed"
+for steps in 10 30; do
+  expect 0 -o 'the layer comes apart' -o '^2 curves' -e 'do not resolve' "$lamella" tear scene.yaml --turgor "0,0.02 MPa" --modes opening --steps $steps -o law$steps.csv
+  if grep -q 'warning' out.txt; then fail "its energies are not balanced: $(cat out.txt)"; fi
+done
+expect 0 "$lamella" tear scene.yaml --turgor "0, 20 kPa" --modes opening --steps 10 --json -o again.csv
+cmp -s law10.csv again.csv || fail "the table depends on what is printed"
 /usr/bin/python3 - <<'PYTHON' || fail "the curves: $(grep curve out.txt)"
 import csv, json
 objects = [json.loads(line) for line in open("out.txt")]
 points, curves = [o for o in objects if "curve" not in o], [o["curve"] for o in objects if "curve" in o]
-rows = list(csv.DictReader(open("law.csv")))
+rows = list(csv.DictReader(open("law10.csv")))
 assert list(rows[0]) == ["mode", "turgor (MPa)", "separation (um)", "traction (MPa)", "crack_separation (um)", "dilation (um)",
                          "work (J/m^2)", "stored (J/m^2)", "dissipated (J/m^2)", "released (J/m^2)", "broken_fraction",
                          "dissipated_walls (J/m^2)", "burst_fraction", "F11",
                          "F12", "F22", "jumped"], list(rows[0])
-assert len(rows) == len(points) == sum(c["states"] for c in curves)
+assert len(rows) == len(points)
 for row, point in zip(rows, points):
     assert abs(float(row["traction (MPa)"]) - point["traction"]) < 1e-12 and row["mode"] == point["mode"] == "opening"
 assert [c["turgor"] for c in curves] == [0, 0.02] and all(c["end"] == "apart" for c in curves)
 for c in curves:
     own = [p for p in points if p["turgor"] == c["turgor"]]
-    F0, last = own[0], own[-1]
+    states = [p for p in own if p["work"] is not None]
+    F0, last = states[0], states[-1]
     height = 75 * 3 ** 0.5
-    # the separation is that of the layer, and the traction does its work
-    assert all(abs(p["separation"] - height * (p["F22"] - F0["F22"])) < 1e-6 and p["F11"] == F0["F11"] for p in own)
-    integral = sum((p["traction"] + q["traction"]) / 2 * (q["separation"] - p["separation"]) for p, q in zip(own, own[1:]))
-    assert abs(integral - last["work"]) < 0.005 * last["work"], (integral, last["work"])
-    # the balance; what jumps lose is never gained, up to the error of the trapezoidal rule on coarse steps
-    for p, q in zip(own, own[1:]):
-        assert abs(q["work"] - q["stored"] - q["dissipated"] - q["released"]) < 1e-12
-        assert q["dissipated"] >= p["dissipated"] - 1e-12 and q["released"] > p["released"] - 0.015 * last["work"]
+    assert len(states) == c["states"]
+    # the separation is that of the layer
+    assert all(abs(p["separation"] - height * (p["F22"] - F0["F22"])) < 1e-6 and p["F11"] == F0["F11"] for p in states)
+    # each energy is computed by itself: what jumps lose is seen, and the sum is the work of the traction
+    assert abs(c["imbalance"] - last["work"] + last["stored"] + c["energy"]) < 1e-12 and 0 < abs(c["imbalance"]) < 0.005 * c["energy"], c
+    for p, q in zip(states, states[1:]):
+        assert q["dissipated"] >= p["dissipated"] - 1e-12 and q["released"] >= p["released"]
+        assert q["jumped"] == (q["released"] > p["released"]), q
     assert abs(c["energy"] - last["dissipated"] - last["released"]) < 1e-12 and c["work"] == last["work"]
-    # the law of the crack alone spends what the layer does, up to the same rule: 2 % on steps four times as long
-    assert abs(c["law_energy"] - last["work"]) < 0.005 * last["work"], (c["law_energy"], last["work"])
     assert abs(c["straight_crack_energy"] * F0["F11"] - 0.1 * 2 / 3 ** 0.5) < 1e-9
     assert c["strength"] == max(p["traction"] for p in own)
     assert 0.8 * c["straight_crack_energy"] < c["energy"] < 3 * c["straight_crack_energy"]
 dry, turgid = curves
 assert turgid["strength"] < 0.8 * dry["strength"] and turgid["work"] < turgid["energy"]
+assert any(p["work"] is None for p in points), "no jump is wide"
+
+# lines between the rows do the work, over the separation and over the crack's part of it alike, on any steps
+for name in ("law10.csv", "law30.csv"):
+    rows = list(csv.DictReader(open(name)))
+    for turgor in (0.0, 0.02):
+        own = [r for r in rows if abs(float(r["turgor (MPa)"]) - turgor) < 1e-9]
+        work = float(own[-1]["work (J/m^2)"])
+        for of in ("separation (um)", "crack_separation (um)"):
+            line = sum((float(p["traction (MPa)"]) + float(q["traction (MPa)"])) / 2 * (float(q[of]) - float(p[of])) for p, q in zip(own, own[1:]))
+            assert abs(line - work) < 0.003 * work, (name, turgor, of, line, work)
+PYTHON
+
+# rigid cells: the two faces that a crack cuts open by D and nothing else does; the law of the lamella is that of the layer
+tissue wall='law: fibre_mooney_rivlin, C1: 100 MPa, C2: 10 MPa, C4: 1000 MPa' turgor='mode: none' mesh='along: 6, through: 1' \
+  interface='law: lamella, strength: 0.01 MPa, fracture_energy: 0.05 J/m^2' >rigid.yaml </dev/null
+expect 0 "$lamella" tear rigid.yaml --modes opening --steps 10 --json --quiet
+/usr/bin/python3 - <<'PYTHON' || fail "one interface: $(tail -1 out.txt)"
+import json
+objects = [json.loads(line) for line in open("out.txt")]
+points, c = objects[:-1], objects[-1]["curve"]
+share = 2 / 3 ** 0.5  # of faces per width
+assert c["end"] == "apart" and c["released_share"] < 1e-4
+for of in ("energy", "work", "law_energy"):
+    assert abs(c[of] - 0.05 * share) < 0.003 * 0.05 * share, (of, c[of])
+assert abs(c["strength"] - 0.01 * share) < 0.03 * 0.01 * share, c["strength"]
+for p in points:
+    if 0.4 < p["crack_separation"] < 9.9:
+        assert abs(p["traction"] - 0.01 * share * (1 - p["crack_separation"] / 10)) < 0.01 * 0.01 * share, p
+PYTHON
+
+# cells whose walls burst give their fluid away: the traction alone does the work, and the sum is closed
+tissue interface='law: lamella, strength: 0.05 MPa, fracture_energy: 0.5 J/m^2' turgor='mode: prescribed, pressure: 0.01 MPa' >burst.yaml <<'YAML'
+strength: {wall: 0.2 MPa, wall_fracture_energy: 1 J/m^2}
+YAML
+expect 0 -o '100 % of the cells have burst' "$lamella" tear burst.yaml --modes opening --steps 10 -o burst.csv
+/usr/bin/python3 - <<'PYTHON' || fail "bursts: $(cat burst.csv)"
+import csv
+rows = list(csv.DictReader(open("burst.csv")))
+assert float(rows[-1]["burst_fraction"]) == 1
+line = sum((float(p["traction (MPa)"]) + float(q["traction (MPa)"])) / 2 * (float(q["separation (um)"]) - float(p["separation (um)"])) for p, q in zip(rows, rows[1:]))
+work, stored, dissipated, released = (float(rows[-1][f"{name} (J/m^2)"]) for name in ("work", "stored", "dissipated", "released"))
+assert abs(line - work) < 0.005 * work, (line, work)
+assert abs(work - stored - dissipated - released) < 0.02 * (dissipated + released)
 PYTHON
 
 # in shear nothing presses on the layer, which rises
@@ -48,7 +94,7 @@ expect 0 -o '^shear under a turgor of 0.02 MPa' -o 'still holds' "$lamella" tear
 /usr/bin/python3 - <<'PYTHON' || fail "the curve in shear: $(cat shear.csv)"
 import csv
 rows = list(csv.DictReader(open("shear.csv")))
-assert len(rows) == 7 and abs(float(rows[-1]["separation (um)"]) - 20) < 1e-9
+assert len(rows) >= 7 and abs(float(rows[-1]["separation (um)"]) - 20) < 1e-9
 assert abs(float(rows[-1]["dilation (um)"])) > 0.5
 assert max(float(r["traction (MPa)"]) for r in rows) > float(rows[-1]["traction (MPa)"])
 PYTHON

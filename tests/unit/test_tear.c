@@ -83,18 +83,22 @@ TEST(tissue_without_rows_along_the_layer_is_refused)
 
 TEST(readings_are_those_of_the_curve)
 {
-  LamTearPoint points[] = {{.separation = 0},
-                           {.separation = 1, .traction = 2, .crack = 0.2, .dissipated = 0.1},
-                           {.separation = 2, .traction = 1, .crack = 1.6, .dissipated = 1.2, .released = 0.2},
-                           {.separation = 3, .crack = 3, .dissipated = 2.1, .released = 0.7}};
-  const LamTearCurve curve = {.count = 4, .points = points};
+  LamTearPoint points[] = {
+      {.is_state = 1},
+      {.is_state = 1, .separation = 1, .traction = 2, .crack = 0.2, .dissipated = 0.1},
+      {.separation = 1, .traction = 1.5, .crack = 0.6}, /* in a fall */
+      {.is_state = 1, .separation = 2, .traction = 1, .crack = 1.6, .dissipated = 1.2, .released = 0.2},
+      {.is_state = 1, .separation = 3, .crack = 3, .work = 2.5, .stored = -0.5, .dissipated = 2.1, .released = 0.7}};
+  const LamTearCurve curve = {.count = 5, .points = points};
   const LamTearReadings r = LamTearRead(&curve);
 
   assert_near(r.strength, 2, 0);
   assert_near(r.at, 1, 0);
   assert_near(r.energy, 2.8, 1e-15);
   assert_near(r.share, 0.25, 1e-15);
-  assert_near(r.law, 0.2 + 1.5 * 1.4 + 0.5 * 1.4, 1e-15);
+  assert_near(r.law, 0.2 + 1.75 * 0.4 + 1.25 * 1.0 + 0.5 * 1.4, 1e-15);
+  assert_near(r.imbalance, 2.5 + 0.5 - 2.8, 1e-15); /* what was released is not what is left */
+  assert_int_equal(r.states, 4);
 }
 
 TEST_GROUP(.petsc = 1);
