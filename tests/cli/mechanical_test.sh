@@ -23,6 +23,27 @@ assert abs(at["stress"] - float(rows[5]["stress (MPa)"])) < 1e-9 and at["tangent
 assert beyond["stress"] is None and not test["peak_passed"] and abs(test["work"] - test["returned"]) < 1e-9 * test["work"]
 PYTHON
 
+# the picture has the numbers of the table, and its axes say what they count from
+if /usr/bin/python3 -c 'import cffi, h5py, matplotlib, yaml' 2>/dev/null && [ -f "$(dirname "$lamella")/liblamella.so" ]; then
+  PYTHONPATH=$source/python LAMELLA_LIBRARY=$(dirname "$lamella") /usr/bin/python3 - <<'PYTHON' || fail "the picture contradicts the table"
+import csv
+import numpy as np
+import lamella.plot
+drawn = lamella.plot.draw("apple.h5")
+axes = drawn.axes[-1]
+assert axes.get_xlabel() == "$F_{11}$ from the inflated tissue", axes.get_xlabel()
+assert axes.get_ylabel() == "effective stress $P$ (MPa) per area of the inflated tissue", axes.get_ylabel()
+rows = list(csv.DictReader(open("apple.csv")))
+for line in axes.lines:
+    if line.get_label().startswith("$P_"):
+        column = f"P{line.get_label()[4:6]} (MPa)"
+        assert np.allclose(line.get_xdata(), [float(row["F11"]) for row in rows], atol=1e-9)
+        assert np.allclose(line.get_ydata(), [float(row[column]) for row in rows], atol=1e-9), column
+texts = [text.get_text() for text in drawn.findobj(match=lambda one: hasattr(one, "get_text"))]
+assert any("from the inflated tissue" in text and "$F$ = [" in text for text in texts), texts
+PYTHON
+fi
+
 # without readings the object is not there, and the table has the states alone
 expect 0 "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --json -o shear.h5
 grep -q '"test"' out.txt && fail "readings that nobody asked for"

@@ -35,13 +35,30 @@ def _working(F, P):
     return most if work[most] > 0.99 * work.sum() > 0 else None
 
 
-class LoadAxis:
-    """What varies along the states: label, values, component of F (None: something else), and whether it is the state's
-    number."""
+class Measured:
+    """F and P of states as the table of `rve` and OUT.csv have them, and what they count from. test: what was read off
+    the curve (docs/reference/commands.md, Mechanical tests): with F_inflated F counts from the inflated tissue, and P is
+    per area of `reference`."""
 
-    def __init__(self, responses, keys):
-        F, P = responses.F, responses.P
+    def __init__(self, responses, test):
+        self.F, self.P = responses.F, responses.P
+        self.of_F = self.of_P = ""
+        if "F_inflated" in test:
+            lengths = np.diagonal(np.reshape(test["F_inflated"], (3, 3)))
+            self.F = self.F / lengths
+            self.of_F, self.of_P = " from the inflated tissue", " per area at rest"
+            if test["reference"] == "inflated":
+                self.P, self.of_P = self.P * lengths / lengths.prod(), " per area of the inflated tissue"
+
+
+class LoadAxis:
+    """What varies along the states: label, values, component of F (None: something else), what F counts from (of), and
+    whether it is the state's number."""
+
+    def __init__(self, responses, keys, measured):
+        F, P = measured.F, measured.P
         self.component = self.name = self.unit = None
+        self.of = ""
         self.label, self.values, self.whole = "state", np.asarray(keys, float), True
         varying = [tuple(c) for c in np.argwhere((np.abs(F - F[0]) > 1e-12).any(axis=0))]
         loads = [(name, sign, getattr(responses, name)) for name, sign in (("turgor", "p"), ("cohesion", "g"))
@@ -49,25 +66,27 @@ class LoadAxis:
         H = F - np.eye(3)
         if not loads and varying:
             if len(varying) == 1:
-                self._choose(varying[0], F, _monotonic)
+                self._choose(varying[0], measured, _monotonic)
             elif _proportional(H):
                 norm = np.linalg.norm(H, axis=(1, 2))
                 if _monotonic(norm):
-                    self.label = self.name = r"$\Vert F - I\Vert$"
+                    self.name, self.of = r"$\Vert F - I\Vert$", measured.of_F
+                    self.label = self.name + self.of
                     self.values, self.whole = norm, False
             elif _working(F, P) is not None:
-                self._choose(_working(F, P), F, lambda values: True)
+                self._choose(_working(F, P), measured, lambda values: True)
         elif len(loads) == 1 and not varying and _monotonic(loads[0][2]):
             name, sign, values = loads[0]
             self.unit, size = pressure_unit(values)
             self.label, self.values, self.whole = f"{name} ${sign}$ ({self.unit})", values / size, False
             self.name = f"${sign}$"
 
-    def _choose(self, component, F, allowed):
+    def _choose(self, component, measured, allowed):
         i, j = component
-        if allowed(F[:, i, j]):
-            self.component, self.values, self.whole = (i, j), F[:, i, j], False
-            self.label = self.name = f"$F_{{{i + 1}{j + 1}}}$"
+        if allowed(measured.F[:, i, j]):
+            self.component, self.values, self.whole = (i, j), measured.F[:, i, j], False
+            self.name, self.of = f"$F_{{{i + 1}{j + 1}}}$", measured.of_F
+            self.label = self.name + self.of
 
 
 def peak(responses):
@@ -85,15 +104,16 @@ def peak(responses):
     return int(known[rise.argmax()]) if np.isfinite(rise).any() else None
 
 
-def stress(page, axes, responses, keys, test=None, options=None):
+def stress(page, axes, responses, keys, test, options=None):
     """P11, P12, P21, P22 over the states; rings around unstable ones, crosses for those without an answer. test: what
     was read off the curve (docs/reference/commands.md, Mechanical tests)."""
-    load, known, unstable = LoadAxis(responses, keys), solved(responses), responses.status == "unstable"
-    unit, size = pressure_unit(responses.P[known][:, :2, :2])
+    measured = Measured(responses, test)
+    load, known, unstable = LoadAxis(responses, keys, measured), solved(responses), responses.status == "unstable"
+    unit, size = pressure_unit(measured.P[known][:, :2, :2])
     stride = 1 if len(keys) <= 40 else (len(keys) + 19) // 20
     lowest, highest = np.inf, -np.inf
     for k, (i, j) in enumerate(COMPONENTS):
-        P = np.where(known, responses.P[:, i, j], np.nan) / size
+        P = np.where(known, measured.P[:, i, j], np.nan) / size
         lowest, highest = min(lowest, np.nanmin(P, initial=np.inf)), max(highest, np.nanmax(P, initial=-np.inf))
         axes.plot(load.values, P, color=LINES[k], marker=MARKERS[k], linestyle=(0, (3.2, 1.8)) if k > 1 else "-",
                   markerfacecolor="white" if k % 2 else LINES[k], markevery=stride, label=f"$P_{{{i + 1}{j + 1}}}$")
@@ -103,20 +123,19 @@ def stress(page, axes, responses, keys, test=None, options=None):
         below = lowest - 0.1 * (highest - lowest) if lowest <= highest else 0
         axes.plot(load.values[~known], np.full((~known).sum(), below), "x", color="black", markeredgewidth=1.2,
                   label="no answer")
-    axes.set(xlabel=load.label, ylabel=f"effective stress $P$ ({unit})")
+    axes.set(xlabel=load.label, ylabel=f"effective stress $P$ ({unit}){measured.of_P}")
     if load.whole:
         axes.xaxis.get_major_locator().set_params(integer=True)
     limits(axes, options or {})
-    if test and load.component and test.get("component") == f"{load.component[0] + 1}{load.component[1] + 1}":
+    if load.component and test.get("component") == f"{load.component[0] + 1}{load.component[1] + 1}":
         _readings(page, axes, test, load.component)
     legend(page, axes)
 
 
 def _readings(page, axes, test, component):
-    """Bioyield and peak: strains count from the inflated tissue where the test does, F from rest."""
+    """Bioyield and peak, whose strains count from where F does."""
     i, j = component
-    F0 = np.reshape(test.get("F_inflated", np.eye(3)), (3, 3))
     for name in ("bioyield", "peak"):
         read = test.get(name)
         if read and (name == "bioyield" or test.get("peak_passed")):
-            mark(page, axes, (read["strain"] + (i == j)) * F0[j, j], name, EVENT)
+            mark(page, axes, read["strain"] + (i == j), name, EVENT)

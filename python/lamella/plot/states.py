@@ -37,11 +37,12 @@ def _choose(source, state):
 
 def _title(source, k, highest):
     """State 5, peak:  F = [1, 0.3; 0, 1],  turgor p = 0.02 MPa"""
-    r = source.responses[k]
-    plane = not r.F[[0, 1, 2, 2], [2, 2, 0, 1]].any() and r.F[2, 2] == 1
-    F = r.F[:2, :2] if plane else r.F
+    r, measured = source.responses[k], curves.Measured(source.responses, source.object("test"))
+    F = measured.F[k]
+    if not F[[0, 1, 2, 2], [2, 2, 0, 1]].any() and F[2, 2] == 1:  # plane strain
+        F = F[:2, :2]
     rows = "; ".join(", ".join(map(ratio, row)) for row in F)
-    text = f"State {source.keys[k]}{', peak' if k == highest else ''}:  $F$ = [{rows}],  turgor $p$ = " \
+    text = f"State {source.keys[k]}{', peak' if k == highest else ''}:  $F$ = [{rows}]{measured.of_F},  turgor $p$ = " \
            f"{number(float(r.turgor) / 1e6)} MPa"
     if source.tissue.get("interface", {}).get("law") == "contact" or r.cohesion > 0:
         text += f",  cohesion $g$ = {number(float(r.cohesion) / 1e6)} MPa"
@@ -88,14 +89,15 @@ def draw(source, options, state=None, field=None, strip=False, forces=False):
 
 
 def _strip(source, name, label, highest, forces, options):
-    load = curves.LoadAxis(source.responses, source.keys)
+    load = curves.LoadAxis(source.responses, source.keys, curves.Measured(source.responses, source.object("test")))
     states = [k for k in range(len(source.keys)) if source.has(f"fields/{source.keys[k]}/x")]
     states = [states[i] for i in chosen(len(states), int(np.searchsorted(states, highest or 0)))]
     cells = [_cells(source, k, name, forces) for k in states]
     frame = Frame(cells, label, options)
 
     def title(k):
-        at = "" if load.whole else f":  {load.name} = {ratio(load.values[k])}{' ' + load.unit if load.unit else ''}"
+        unit = " " + load.unit if load.unit else ""
+        at = "" if load.whole else f":  {load.name} = {ratio(load.values[k])}{unit}{load.of}"
         return f"State {source.keys[k]}{', peak' if k == highest else ''}{at}"
     return draw_strip(options, frame, [title(k) for k in states], lambda view, k: frame.draw(view, cells[k]),
                       lambda page, view, right: frame.key(page, view, source.apothem * 1e6, right, undeformed=False))
