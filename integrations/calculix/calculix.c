@@ -86,9 +86,11 @@ void CALCULIX(const char *amat, const int *iel, const int *iint, const int *kode
   CheckArguments(amat, *nstate_, *ithermal, *iorien, beta);
   tissue = TissueFind(amat, NAME, -*kode - 100, elconloc);
   TissueGradient(xokl, start);
+  TissueRound(start);
   if (*ielas != ELASTIC_ITERATION) {
     TissueGradient(xkl, F);
     CheckStrain(amat, F, emec);
+    TissueRound(F);
     if (TissueRespond(tissue, &load, begin, &xstate[place], &response)) {
       Return(F, &response, stre, stiff);
       return;

@@ -265,14 +265,7 @@ static void Keep(Tissue t, const TissueLoad *load, Point *p)
 /* The load as a row of bind.h. */
 static void FillLoad(Tissue t, const TissueLoad *load, double row[])
 {
-  static const int shears[4] = {2, 5, 6, 7};
-  double *F = row;
-  int plane = 1;
-
-  memcpy(F, load->F, 9 * sizeof(*F));
-  for (int k = 0; k < 4; k++) plane = plane && fabs(F[shears[k]]) <= ROUNDED;
-  for (int k = 0; k < 4 && plane; k++) F[shears[k]] = 0;
-  if (fabs(F[8] - 1) <= ROUNDED) F[8] = 1;
+  memcpy(row, load->F, 9 * sizeof(*row));
   row[9] = load->turgor * t->unit;
   row[10] = t->cohesion;
 }
@@ -280,6 +273,16 @@ static void FillLoad(Tissue t, const TissueLoad *load, double row[])
 void TissueGradient(const double columns[9], double F[9])
 {
   for (int i = 0; i < 9; i++) F[i] = columns[3 * (i % 3) + i / 3];
+}
+
+void TissueRound(double F[9])
+{
+  static const int shears[4] = {2, 5, 6, 7};
+  int plane = 1;
+
+  for (int k = 0; k < 4; k++) plane = plane && fabs(F[shears[k]]) <= ROUNDED;
+  for (int k = 0; k < 4 && plane; k++) F[shears[k]] = 0;
+  if (fabs(F[8] - 1) <= ROUNDED) F[8] = 1;
 }
 
 /* Copies what is needed of a response of the library; returns whether it is one of a stable equilibrium. */

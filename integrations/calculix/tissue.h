@@ -50,6 +50,8 @@ int TissueRespond(Tissue tissue, const TissueLoad *load, const double begin[TISS
 
 /* Row-major F of a host's, by columns. */
 void TissueGradient(const double columns[9], double F[9]);
+/* Takes off what is rounding of the components that plane strain has not: before a load has F, and S is made of it. */
+void TissueRound(double F[9]);
 /* Tells once for each attempt at an increment, which ends at `time`, why it is cut back. */
 void TissueReport(const TissueLoad *load, double time, const char reason[]);
 /* Ends the program. */

@@ -59,6 +59,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
   TissueGradient(dfgrd0, F0);
   TissueGradient(dfgrd1, F);
   CheckStrain(cmname, length, *ntens, F, stran, dstran);
+  TissueRound(F0);
+  TissueRound(F);
   tissue = TissueFind(cmname, length, *nprops, props);
   if (!TissueRespond(tissue, &load, statev, statev, &response)) {
     TissueReport(&load, time[1] + *dtime, response.reason);
