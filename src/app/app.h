@@ -134,18 +134,15 @@ typedef struct {
   PetscReal strain[LAM_MOST_STRAINS];
 } LamTestOptions;
 
-/* ---- console.c: messages of a study, and a bar on stderr if it is a terminal ---- */
+/* ---- console.c: messages of a study, and a line of its progress on stderr if it is a terminal ---- */
 typedef struct {
   const char *command; /* "build" */
   PetscBool json, quiet;
-  PetscBool has_rows;     /* the rows of a table on the terminal already show the progress: no bar */
-  PetscBool warned;       /* of localisation, once */
-  PetscReal start, drawn; /* of the first update, of the bar on the screen; 0: none */
-  PetscInt64 first;       /* done at the first update */
+  PetscBool warned; /* of localisation, once */
   LamTestOptions test;
 } LamConsole;
 LamReporter LamConsoleReporter(LamConsole *console); /* borrows it */
-void LamConsoleClear(LamConsole *console);           /* removes the bar */
+void LamConsoleClear(void);                          /* removes the line; call it before anything is printed */
 /* After a signal, on rank 0: what is in the file of -o or -d (NULL: none), and how to go on. resumes: with --resume. */
 void LamTellStopped(const LamConsole *console, const char path[], PetscBool resumes);
 /* Exit status after a stop request, or `unsolved` or not; that of rank 0 on all ranks, as mpirun reports the largest.

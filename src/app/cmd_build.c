@@ -55,7 +55,7 @@ static PetscErrorCode Run(LamBuild *b, LamConsole *console, const char scene_pat
   PetscFunctionBeginUser;
   PetscCall(LamBuildPrepare(b, scene_path));
   PetscCall(LamBuildTable(b));
-  LamConsoleClear(console);
+  LamConsoleClear();
   if (!b->rank && console->json) PetscCall(ReportCommit(NULL, b)); /* the table at the end */
   if (!b->rank && !console->json) PrintTable(b, LamClock() - b->start);
   LamTellStopped(console, b->path, PETSC_TRUE);

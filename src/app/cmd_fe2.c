@@ -49,7 +49,7 @@ static PetscErrorCode Solve(LamFE2Run *run, LamConsole *console, int *exit_statu
                                   "is slow; -d DB.h5 responds from a database of prescribed turgor, which later runs "
                                   "use again");
   PetscCall(LamFE2Solve(run));
-  LamConsoleClear(console);
+  LamConsoleClear();
   PetscCall(Report(run, console, exit_status));
   PetscFunctionReturn(0);
 }
@@ -105,7 +105,6 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   run.step = LamFE2ReportStep;
   run.step_ctx = &console;
   run.all_fields = (PetscBool)(!console.json || console.test.readings); /* the summary has the curve */
-  console.has_rows = (PetscBool)(!console.json && isatty(STDOUT_FILENO));
   PetscCall(Solve(&run, &console, exit_status));
   PetscCall(LamFE2Destroy(&run));
   PetscFunctionReturn(0);

@@ -353,8 +353,9 @@ static PetscErrorCode CheckFile(const char path[], LamConsole *console, int *exi
   char *text;
 
   PetscFunctionBeginUser;
+  LamActivitySet("records");
   PetscCall(LamFileCheck(path, &reporter, &sound, &text));
-  LamConsoleClear(console);
+  LamConsoleClear();
   check = json_loads(text, 0, NULL);
   PetscCall(PetscFree(text));
   PetscCheck(check, PETSC_COMM_SELF, PETSC_ERR_LIB, "%s: what is damaged is no JSON", path);

@@ -112,7 +112,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
   m.reporter = LamConsoleReporter(&console);
   if (console.json) m.point = PrintPoint;
   PetscCall(LamMapRun(&m));
-  LamConsoleClear(&console);
+  LamConsoleClear();
   if (!m.rank && !console.json) PrintSummary(&m);
   LamTellStopped(&console, m.path, PETSC_TRUE);
   PetscCall(LamShareOutcome((PetscBool)(!m.rank && LamMapCountMode(&m, LAM_FAILURE_UNKNOWN)), exit_status));

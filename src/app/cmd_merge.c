@@ -45,9 +45,10 @@ static PetscErrorCode Run(Merge *m, int *exit_status)
 
   PetscFunctionBeginUser;
   start = LamClock();
+  LamActivitySet("records");
   PetscCall(LamDatabaseMerge(m->out, m->n, m->files, &options, &report));
   end = LamClock();
-  LamConsoleClear(&m->console);
+  LamConsoleClear();
   *exit_status = report.stopped ? LamStopExitStatus() : LAM_EXIT_OK;
   if (report.stopped) PetscFunctionReturn(0);
   if (report.differing && !m->console.quiet)

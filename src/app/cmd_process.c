@@ -155,7 +155,7 @@ static PetscErrorCode ReportPointEnd(void *ctx, const LamProcessStudy *study)
   LamProcessCounts counts;
 
   PetscFunctionBeginUser;
-  LamConsoleClear(console);
+  LamConsoleClear();
   if (study->response.stopped) PetscFunctionReturn(0);
   if (!console->quiet) WarnOfIndicators(study);
   if (study->reason == LAM_PROCESS_ENDED)
@@ -279,7 +279,6 @@ static PetscErrorCode RunPoint(const LamFE2Run *run, PetscInt frames, LamConsole
                            .done = ReportPointEnd};
 
   PetscFunctionBeginUser;
-  console->has_rows = (PetscBool)!console->json;
   PetscCall(LamProcessStudyRun(&study));
   *exit_status = StatusOf(study.reason);
   PetscCall(LamSceneDestroy(&study.response.scene));
@@ -294,9 +293,8 @@ static PetscErrorCode SolveBody(LamBodyStudy *study, LamConsole *console, int *e
   if (!LamFE2CheckPaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamBodyStudyPrepare(study));
   if (!LamFE2CheckTissuePaths("process", fe2, exit_status)) PetscFunctionReturn(0);
-  console->has_rows = (PetscBool)(!console->json && isatty(STDOUT_FILENO));
   PetscCall(LamBodyStudySolve(study));
-  LamConsoleClear(console);
+  LamConsoleClear();
   *exit_status = StatusOf(study->reason);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, exit_status, 1, MPI_INT, MPI_MAX, fe2->comm));
   if (!LamAppIsRoot() || fe2->stopped) PetscFunctionReturn(0);

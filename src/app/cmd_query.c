@@ -63,17 +63,19 @@ static PetscErrorCode QueryLine(Query *q, PetscInt number, char line[])
 
 static PetscErrorCode QueryInput(Query *q)
 {
-  const LamReporter reporter = LamConsoleReporter(&q->console);
+  /* rows that appear on the terminal are the progress */
+  const LamReporter reporter = isatty(STDOUT_FILENO) ? (LamReporter){0} : LamConsoleReporter(&q->console);
   PetscErrorCode ierr = 0;
   size_t capacity = 0;
   char *line = NULL;
 
   PetscFunctionBeginUser;
+  LamActivitySet("lines");
   for (PetscInt number = 1; !ierr && getline(&line, &capacity, stdin) >= 0; number++) {
     ierr = QueryLine(q, number, line);
-    if (!ierr) ierr = reporter.progress(reporter.ctx, q->answered + q->refused, 0, 0);
+    if (!ierr) ierr = LamReportProgress(&reporter, q->answered + q->refused, 0, 0);
   }
-  LamConsoleClear(&q->console);
+  LamConsoleClear();
   free(line);
   PetscCall(ierr);
   PetscCheck(!ferror(stdin), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "standard input: %s", strerror(errno));
@@ -140,7 +142,7 @@ static PetscErrorCode Run(Query *q, int *exit_status)
 
 PetscErrorCode LamCommandQuery(LamArgs *args, int *exit_status)
 {
-  Query q = {.console = {.command = "query", .has_rows = (PetscBool)isatty(STDOUT_FILENO)}};
+  Query q = {.console = {.command = "query"}};
   PetscBool done;
   const char *path;
   const LamOption options[] = {

@@ -258,7 +258,6 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
   run->start = LamClock();
   run->derivatives = command->tangent;
   run->walls = console->json;
-  console->has_rows = (PetscBool)(run->monitor || !console->json);
   PetscCall(LamSceneRead(command->scene_path, &run->scene));
   if (!GlobalFits(command, exit_status)) {
     PetscCall(LamRVERunDestroy(run));
@@ -271,7 +270,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     PetscCall(LamRVERunPrepare(run));
     if (!console->json) PetscCall(LamPrintResponseHeader(run->scene->micro.interface, LAM_SOURCE_SOLVE));
     PetscCall(LamRVERunSolve(run));
-    LamConsoleClear(console);
+    LamConsoleClear();
     PetscCall(ReportEnd(command));
     LamTellStopped(console, run->out_path, PETSC_FALSE);
     *exit_status = ExitStatus(run);

@@ -192,7 +192,7 @@ static PetscErrorCode Report(void *ctx, const LamTear *tear, const LamTearCurve 
 
   PetscFunctionBeginUser;
   AddToTable(command, curve);
-  LamConsoleClear((LamConsole *)ctx);
+  LamConsoleClear();
   if (command->console.json) {
     PetscCall(PrintObjects(tear, curve));
     PetscCall(PrintCurveObject(tear, curve));
@@ -321,7 +321,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
     if (!ierr) ierr = written;
   }
   PetscCall(ierr);
-  LamConsoleClear(&command->console);
+  LamConsoleClear();
   if (!command->console.json) {
     printf("%d curves, %.3g s\n", (int)tear->curves, (double)(LamClock() - command->start));
     if (command->out_path) printf("wrote %s\n", command->out_path);

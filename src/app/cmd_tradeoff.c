@@ -365,8 +365,9 @@ static PetscErrorCode Solve(Command *run, int *exit_status)
   PetscFunctionBeginUser;
   t->reporter = LamConsoleReporter(&run->console);
   PetscCall(CheckDirectory(run));
+  LamActivitySet("settings measured");
   PetscCall(LamTradeoffRun(t));
-  LamConsoleClear(&run->console);
+  LamConsoleClear();
   if (run->console.json)
     PetscCall(PrintObjects(t));
   else

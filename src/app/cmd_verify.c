@@ -312,7 +312,7 @@ PetscErrorCode LamCommandVerify(LamArgs *args, int *exit_status)
   PetscCall(args->start(args));
   v.reporter = LamConsoleReporter(&console);
   PetscCall(LamVerificationRun(&v));
-  LamConsoleClear(&console);
+  LamConsoleClear();
   if (!v.rank) PetscCall(PrintReport(&v, console.json));
   /* unsolved: a response has no solution to compare with, or there was no response */
   PetscCall(

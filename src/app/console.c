@@ -1,13 +1,28 @@
 /*
-  The terminal of a study: its messages, and a bar with the rate and the remaining time, on a terminal only.
+  The terminal of a command: its messages, and on stderr, if it is a terminal, a line that says what is being done, how
+  much of it, and how long the rest will take. The line is drawn where a study reports progress or looks for a request
+  to stop. Everything that is printed removes it first (LamConsoleClear).
 */
 #include "app.h"
 #include "clock.h"
+#include <string.h>
 #include <unistd.h>
 
 enum { BAR_WIDTH = 24 };
 #define REDRAW_SECONDS 0.1
-#define ERASE "\r\033[K" /* the line of the bar */
+#define SILENT_SECONDS 1.0 /* of an activity without progress, before the line appears */
+#define ERASE "\r\033[K"   /* the line */
+
+/* There is one terminal, and so one line. */
+static struct {
+  const LamConsole *console; /* whose; NULL: none is drawn */
+  char activity[128];
+  PetscReal start, drawn;         /* of the activity; of the line, 0: it is not on the screen */
+  PetscInt64 done, total, failed; /* the last report, */
+  PetscReal reported;             /* and its time; 0: there is none */
+  PetscInt64 first;               /* done in the first report: before this run */
+  PetscReal began;                /* time of the first report */
+} Line;
 
 static void PrintDuration(PetscReal seconds)
 {
@@ -24,7 +39,7 @@ static void PrintMessage(void *ctx, PetscBool warning, const char text[])
   const LamConsole *console = (const LamConsole *)ctx;
 
   if (!warning && console->quiet) return;
-  if (console->drawn) fputs(ERASE, stderr); /* the next update draws the bar again */
+  LamConsoleClear();
   fprintf(stderr, "lamella %s: %s\n", console->command, text);
 }
 
@@ -32,50 +47,88 @@ static void PrintBar(PetscInt64 done, PetscInt64 total)
 {
   const int filled = (int)(BAR_WIDTH * PetscMin(done, total) / total);
 
-  fputc('[', stderr);
+  fputs(" [", stderr);
   for (int i = 0; i < BAR_WIDTH; i++) fputc(i < filled ? '#' : '.', stderr);
-  fputs("] ", stderr);
+  fputc(']', stderr);
 }
 
-/* Message and progress functions of a LamReporter; work done by an earlier run does not count for the rate. */
-static PetscErrorCode UpdateBar(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
+static void Draw(PetscReal now)
 {
-  LamConsole *console = (LamConsole *)ctx;
-  const PetscReal now = LamClock();
-  PetscReal rate;
+  const PetscReal time = Line.reported - Line.began;
+  const PetscReal rate = time > 0 ? (PetscReal)(Line.done - Line.first) / time : 0;
 
-  PetscFunctionBeginUser;
-  if (console->quiet || console->has_rows || !LamAppIsRoot() || !isatty(STDERR_FILENO)) PetscFunctionReturn(0);
-  if (console->drawn && (done < total || !total) && now - console->drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
-  if (!console->drawn) {
-    console->start = now;
-    console->first = done;
-  }
-  console->drawn = now;
-  fputs(ERASE, stderr);
-  if (total > 0) PrintBar(done, total);
-  fprintf(stderr, "%lld", (long long)done);
-  if (total > 0) fprintf(stderr, "/%lld", (long long)total);
-  rate = now > console->start ? (PetscReal)(done - console->first) / (now - console->start) : 0;
-  if (rate > 0) fprintf(stderr, "  %.3g/s", rate);
-  if (rate > 0 && total > 0) {
+  Line.drawn = now;
+  fprintf(stderr, ERASE "lamella %s:", Line.console->command);
+  if (Line.activity[0]) fprintf(stderr, " %s", Line.activity);
+  if (Line.total > 0) PrintBar(Line.done, Line.total);
+  if (Line.reported > 0) fprintf(stderr, " %lld", (long long)Line.done);
+  if (Line.total > 0) fprintf(stderr, "/%lld", (long long)Line.total);
+  if (Line.failed) fprintf(stderr, ", %lld failed", (long long)Line.failed);
+  fputs("  ", stderr);
+  PrintDuration(now - Line.start);
+  if (rate > 0) fprintf(stderr, "  %.3g/s", (double)rate);
+  if (rate > 0 && Line.total > 0) {
     fputs("  ", stderr);
-    PrintDuration((PetscReal)(total - done) / rate);
+    PrintDuration(PetscMax(0, (PetscReal)(Line.total - Line.done) / rate - (now - Line.reported)));
     fputs(" left", stderr);
   }
-  if (failed) fprintf(stderr, "  %lld failed", (long long)failed);
+  fflush(stderr);
+}
+
+/* A new activity is counted from its own start. */
+static void FollowActivity(PetscReal now)
+{
+  if (Line.start > 0 && !strcmp(Line.activity, LamActivity())) return;
+  (void)snprintf(Line.activity, sizeof(Line.activity), "%s", LamActivity());
+  Line.start = now;
+  Line.done = Line.total = Line.failed = 0;
+  Line.reported = 0;
+}
+
+/* `watch` of LamStopSetWatch. */
+static void Watch(void)
+{
+  const PetscReal now = LamClock();
+
+  FollowActivity(now);
+  if (now - Line.drawn < REDRAW_SECONDS || now - Line.start < SILENT_SECONDS) return;
+  Draw(now);
+}
+
+/* `progress` of a LamReporter. */
+static PetscErrorCode UpdateLine(void *ctx, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
+{
+  const PetscReal now = LamClock();
+
+  PetscFunctionBeginUser;
+  if (Line.console != ctx) PetscFunctionReturn(0);
+  FollowActivity(now);
+  if (!(Line.reported > 0)) {
+    Line.first = done;
+    Line.began = now;
+  }
+  Line.done = done;
+  Line.total = total;
+  Line.failed = failed;
+  Line.reported = now;
+  if (Line.drawn > 0 && (done < total || !total) && now - Line.drawn < REDRAW_SECONDS) PetscFunctionReturn(0);
+  Draw(now);
   PetscFunctionReturn(0);
 }
 
 LamReporter LamConsoleReporter(LamConsole *console)
 {
-  return (LamReporter){console, PrintMessage, UpdateBar};
+  const PetscBool shown = (PetscBool)(!console->quiet && LamAppIsRoot() && isatty(STDERR_FILENO));
+
+  Line.console = shown ? console : NULL;
+  LamStopSetWatch(shown ? Watch : NULL);
+  return (LamReporter){console, PrintMessage, UpdateLine};
 }
 
-void LamConsoleClear(LamConsole *console)
+void LamConsoleClear(void)
 {
-  if (console->drawn) fputs(ERASE, stderr);
-  console->drawn = 0;
+  if (Line.drawn > 0) fputs(ERASE, stderr);
+  Line.drawn = 0;
 }
 
 void LamTellStopped(const LamConsole *console, const char path[], PetscBool resumes)

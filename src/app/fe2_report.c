@@ -202,6 +202,7 @@ PetscErrorCode LamFE2ReportStep(void *ctx, const LamFE2Run *run, const LamMacroS
   LamConsole *console = (LamConsole *)ctx;
 
   PetscFunctionBeginUser;
+  LamConsoleClear();
   if (console->json)
     PetscCall(LamPrintJSON(LamFE2StepToJSON(run, step, peak_memory)));
   else {

@@ -85,6 +85,7 @@ PetscErrorCode LamPrintJSON(json_t *object)
   json_decref(object);
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_LIB, "an object cannot be written as JSON");
+  LamConsoleClear();
   printf("%s\n", text);
   free(text);
   PetscCall(FlushOutput());
@@ -108,6 +109,7 @@ PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource s
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
+  LamConsoleClear();
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
   PrintContactHeader(interface, names);
@@ -209,6 +211,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
 
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
+  LamConsoleClear();
   printf("%5" PetscInt_FMT, state);
   for (int k = 0; k < 4; k++) LamPrintColumn(7, 4, 'f', F[in_plane[k]]);
   printf(" %9.4g  %-14s", (double)(response->load.turgor * MPa), LamStatusNames[response->status]);

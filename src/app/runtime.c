@@ -184,6 +184,7 @@ static PetscErrorCode WarnOfUnusedOptions(void)
 
 void LamRuntimeEnd(PetscErrorCode code, int *status)
 {
+  LamConsoleClear();
   if (code) *status = StatusOf(code);
   if (EndComm != MPI_COMM_NULL)
     AgreeAtEnd(code, status);

@@ -73,6 +73,7 @@ static PetscErrorCode Begin(LamVerification *v)
   PetscCall(LamAuditCreate(&v->from, v->accuracy ? v->accuracy : v->from.accuracy, v->samples, v->seed, &v->audit));
   v->micro = v->from.micro;
   v->strategy = v->from.scene->strategy;
+  LamActivitySet("states solved afresh");
   PetscFunctionReturn(0);
 }
 

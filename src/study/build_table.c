@@ -64,6 +64,7 @@ static PetscErrorCode SolveRounds(LamBuild *b)
 {
   PetscFunctionBeginUser;
   b->last_commit = b->last_taken = LamClock();
+  LamActivitySet("nodes of the table");
   b->rounds.meanwhile = (LamMeanwhile){LamNodeWorkLook, b->work};
   PetscCall(OpenRounds(b));
   PetscCall(LamNodeWorkRun(b->work, LamBuildCommitAll));

@@ -131,6 +131,10 @@ static PetscErrorCode SolveSteps(void *ctx, PetscBool *stopped, size_t size, cha
 
   PetscFunctionBeginUser;
   PetscCall(LamFE2CheckpointStart(run));
+  LamActivitySet("load steps");
+  if (LamIsFirst(run->comm))
+    PetscCall(LamReportProgress(&run->reporter, run->totals.steps,
+                                run->scene->macro.steps + (run->scene->macro.inflate ? 1 : 0), 0));
   PetscCall(LamMacroSetMonitor(run->macro, StepDone, run));
   PetscCall(LamMacroSetCutback(run->macro, CutBack, run));
   PetscCall(LamMacroSolve(run->macro, &run->reason, run->message));

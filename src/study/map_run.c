@@ -151,6 +151,8 @@ static PetscErrorCode OpenWriter(LamMap *m)
 static PetscErrorCode RunRoot(LamMap *m)
 {
   PetscFunctionBeginUser;
+  LamActivitySet("points of the map");
+  PetscCall(LamReportProgress(&m->reporter, m->old, LamMapPointCount(m->scene), 0));
   PetscCall(LamDispatchAdd(m->dispatch, 0, m->todo_count, 0, 1));
   PetscCall(LamDispatchRun(m->dispatch, NULL, NULL, NULL));
   PetscCall(Commit(m));

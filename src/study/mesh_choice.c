@@ -98,7 +98,7 @@ PetscErrorCode LamChooseMesh(LamScene *scene, LamMeshTrial *trial)
 
 void LamWarnOfMesh(MPI_Comm comm, const LamReporter *reporter, const LamScene *scene, const LamMeshTrial *trial)
 {
-  if (!trial->tried || trial->error <= scene->accuracy || !LamIsFirst(comm)) return;
+  if (!trial->tried || trial->stopped || trial->error <= scene->accuracy || !LamIsFirst(comm)) return;
   if (trial->loads)
     LamReportWarning(
         reporter,

@@ -10,9 +10,10 @@
 typedef struct {
   PetscInt along, through;
   PetscReal grading;
-  PetscReal error; /* of P (LamWholeError), largest over the trial loads; NaN: none of them has a known solution */
-  PetscInt loads;  /* trial loads with a known solution */
-  PetscBool tried; /* PETSC_FALSE: the mesh is given or was measured by `tradeoff`, and nothing above is set */
+  PetscReal error;   /* of P (LamWholeError), largest over the trial loads; NaN: none of them has a known solution */
+  PetscInt loads;    /* trial loads with a known solution */
+  PetscBool tried;   /* PETSC_FALSE: the mesh is given or was measured by `tradeoff`, and nothing above is set */
+  PetscBool stopped; /* before the trial had found a mesh (stop.h): the mesh is a usual one */
 } LamMeshTrial;
 /*
   Solves trial loads of the scene on one cell, on meshes of increasing cost and on a much finer one, and returns the

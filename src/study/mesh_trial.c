@@ -115,6 +115,7 @@ static PetscErrorCode CellCreate(const LamScene *scene, PetscInt cell, Mesh mesh
   PetscCall(LamRVESetTolerance(c->rve, TOLERANCE));
   PetscCall(LamRVESetWanted(c->rve, LAM_WANT_STRESS));
   PetscCall(LamRVESetOutOfPlane(c->rve, scene->out_of_plane));
+  PetscCall(LamRVESetInterrupt(c->rve, LamStopInterrupt, NULL));
   PetscCall(LamRVESetUp(c->rve));
   PetscCall(LamRVEStateCreate(c->rve, &c->state));
   PetscFunctionReturn(0);
@@ -156,7 +157,7 @@ static PetscErrorCode FollowLoads(const LamScene *scene, Cell *cell, Loads *load
   PetscCall(PetscMalloc2(n, &copy.controls, n, &load_of));
   PetscCall(PetscArraycpy(copy.loads, scene->loads, n));
   for (PetscInt k = 0; k < n; k++) copy.controls[k] = scene->controls ? scene->controls[k] : none;
-  for (PetscInt k = 0; k < n; k++) {
+  for (PetscInt k = 0; k < n && !LamStopRequested(); k++) {
     const LamLoad load = LamLoadAfter(&copy.loads[k], &copy.controls[k], F);
     LamResponse response = {.status = LAM_CONVERGED, .load = load};
 
@@ -225,9 +226,10 @@ static PetscErrorCode FindTruth(const LamScene *scene, PetscInt number, Mesh mes
   Cell reference;
 
   PetscFunctionBeginUser;
+  LamActivitySet("trial of meshes: reference of %d x %d elements", (int)mesh.along, (int)mesh.through);
   PetscCall(CellCreate(scene, number, mesh, &reference));
   truth->loads.n = 0;
-  for (PetscInt k = 0; k < all->n; k++) {
+  for (PetscInt k = 0; k < all->n && !LamStopRequested(); k++) {
     LamResponse response;
 
     PetscCall(LamRVEStateReset(path->rve, path->state));
@@ -260,9 +262,10 @@ static PetscErrorCode ErrorOf(const LamScene *scene, PetscInt number, Mesh mesh,
   Cell cell;
 
   PetscFunctionBeginUser;
+  LamActivitySet("trial of meshes: %d x %d elements", (int)mesh.along, (int)mesh.through);
   PetscCall(CellCreate(scene, number, mesh, &cell));
   *error = 0;
-  for (PetscInt k = 0; k < truth->loads.n && isfinite(*error); k++) {
+  for (PetscInt k = 0; k < truth->loads.n && isfinite(*error) && !LamStopRequested(); k++) {
     LamResponse response;
 
     PetscCall(LamRVEStateReset(cell.rve, cell.state));
@@ -282,6 +285,7 @@ static PetscErrorCode Climb(const LamScene *scene, PetscInt cell, const Truth *t
   PetscFunctionBeginUser;
   for (;;) {
     PetscCall(ErrorOf(scene, cell, list->meshes[*at], truth, error));
+    if (LamStopRequested()) break;
     if (MARGIN * *error <= scene->accuracy || *at == list->count - 1) break;
     if (!IsMuchFiner(reference, list->meshes[*at + 1])) break;
     (*at)++;
@@ -298,9 +302,10 @@ static PetscErrorCode TryCell(const LamScene *scene, PetscInt cell, PetscInt *at
   Loads all;
 
   PetscFunctionBeginUser;
+  LamActivitySet("trial of meshes: loads");
   PetscCall(CellCreate(scene, cell, list->meshes[PATH], &path));
   PetscCall(FindLoads(scene, &path, &all));
-  for (PetscInt r = FirstReference(scene->accuracy); r < REFERENCES && truth.loads.n; r++) {
+  for (PetscInt r = FirstReference(scene->accuracy); r < REFERENCES && truth.loads.n && !LamStopRequested(); r++) {
     PetscCall(FindTruth(scene, cell, list->references[r], &all, &path, &truth));
     if (truth.loads.n) PetscCall(Climb(scene, cell, &truth, list->references[r], at, &error));
     if (MARGIN * error <= scene->accuracy) break;
@@ -329,7 +334,10 @@ PetscErrorCode LamTryMeshes(const LamScene *scene, LamMeshTrial *trial)
   *trial = (LamMeshTrial){.tried = PETSC_TRUE, .error = NAN, .grading = list->grading};
   PetscCall(TryCell(scene, thick, &mesh, trial));
   if (thin != thick) PetscCall(TryCell(scene, thin, &mesh, trial));
+  trial->stopped = LamStopRequested();
+  if (trial->stopped) mesh = PetscMax(mesh, UNKNOWN);
   trial->along = list->meshes[mesh].along;
   trial->through = list->meshes[mesh].through;
+  LamActivitySet("%s", "");
   PetscFunctionReturn(0);
 }

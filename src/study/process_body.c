@@ -133,6 +133,8 @@ static PetscErrorCode Follow(void *ctx, PetscBool *stopped, size_t size, char st
   PetscFunctionBeginUser;
   WarnOfNoLoad(&study->fe2);
   if (study->fe2.out) LamFE2FileSetBeside(study->fe2.out, LamBodyHistoryWrite, &study->history);
+  LamActivitySet("time, %%");
+  if (LamIsFirst(study->fe2.comm)) PetscCall(LamReportProgress(&study->fe2.reporter, 0, LAM_PROCESS_PARTS, 0));
   PetscCall(LamBodyRun(study->body, &study->reason, study->message));
   *stopped = (PetscBool)(study->reason == LAM_PROCESS_STOPPED);
   PetscCall(PetscStrncpy(status, study->reason == LAM_PROCESS_DONE ? "done" : study->message, size));

@@ -186,6 +186,8 @@ static PetscErrorCode Follow(LamProcessStudy *study)
   if (study->out_path)
     PetscCall(LamRecordWriterOpen(study->out_path, "process", LAM_WRITE_CREATE, study->scene, &study->writer));
   study->last_commit = LamClock();
+  LamActivitySet("time, %%");
+  PetscCall(LamReportProgress(&study->response.reporter, 0, LAM_PROCESS_PARTS, 0));
   ierr = LamProcessRun(study->process, &study->reason, study->message);
   status = study->reason == LAM_PROCESS_DONE      ? "done"
            : study->reason == LAM_PROCESS_STOPPED ? "stopped"

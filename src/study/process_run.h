@@ -28,7 +28,7 @@ PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *sc
 /* The same as a table for spreadsheets, beside the HDF5 file: .csv; F from the inflated tissue, and P. */
 PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *history);
 PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history); /* a LamBodyHistory */
-#define LAM_PROCESS_PARTS 1000                                             /* of the duration, for progress reports */
+#define LAM_PROCESS_PARTS 100                                              /* of the duration, for progress reports */
 PetscInt64 LamProcessProgress(const LamScene *scene, PetscReal time);      /* parts done */
 
 /* ---- process_point.c ---- */

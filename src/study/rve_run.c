@@ -248,6 +248,8 @@ PetscErrorCode LamRVERunNext(LamRVERun *run, LamResponse responses[2])
 static PetscErrorCode SolveStates(LamRVERun *run)
 {
   PetscFunctionBeginUser;
+  LamActivitySet("states");
+  PetscCall(LamReportProgress(&run->reporter, run->solved, run->scene->load_count, 0));
   while (run->solved < run->scene->load_count && !LamStopRequested()) {
     LamResponse responses[2];
 

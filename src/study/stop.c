@@ -7,6 +7,7 @@
 
 static volatile sig_atomic_t StopSignal;
 static PetscReal Deadline = PETSC_INFINITY; /* in LamClock time */
+static void (*Watch)(void);
 
 #define NEIGHBOURS 16 /* degree of the tree along which requests are sent */
 
@@ -95,8 +96,14 @@ void LamStopSetDeadline(PetscReal clock)
   Deadline = clock;
 }
 
+void LamStopSetWatch(void (*watch)(void))
+{
+  Watch = watch;
+}
+
 PetscBool LamStopRequested(void)
 {
+  if (Watch) Watch();
   if (Team.n && !Team.number && Team.comm != MPI_COMM_NULL) PetscCallAbort(PETSC_COMM_SELF, Exchange());
   return (PetscBool)(StopSignal != 0 || (Deadline < PETSC_INFINITY && LamClock() > Deadline));
 }

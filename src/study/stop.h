@@ -10,6 +10,8 @@
 int LamStopSignal(void); /* the last one received; 0: none */
 PetscBool LamStopRequested(void);
 PetscBool LamStopInterrupt(void *ctx); /* LamStopRequested, for LamRVESetInterrupt */
+/* `watch` is called whenever somebody looks for a request: a sign of life, for the terminal. NULL: none. */
+void LamStopSetWatch(void (*watch)(void));
 /* From this LamClock time on LamStopRequested is true, without a signal; PETSC_INFINITY: never. For work with a time
    limit on one rank. */
 void LamStopSetDeadline(PetscReal clock);

@@ -60,6 +60,22 @@ PetscErrorCode LamRefuseHistory(const char path[], const LamMicrostructure *micr
   PetscFunctionReturn(0);
 }
 
+static char Activity[128];
+
+void LamActivitySet(const char format[], ...)
+{
+  va_list values;
+
+  va_start(values, format);
+  vsnprintf(Activity, sizeof(Activity), format, values);
+  va_end(values);
+}
+
+const char *LamActivity(void)
+{
+  return Activity;
+}
+
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed)
 {
   PetscFunctionBeginUser;

@@ -14,6 +14,10 @@ void LamReportNote(const LamReporter *reporter, const char format[], ...) PETSC_
 void LamReportWarning(const LamReporter *reporter, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 /* The warnings of the scene, and of its turgor. On rank 0. */
 void LamReportScene(const LamReporter *reporter, const LamScene *scene);
+/* What is being done and counted by the progress that follows, such as "load steps"; kept for the process, whose line
+   on the terminal it begins. */
+void LamActivitySet(const char format[], ...) PETSC_ATTRIBUTE_FORMAT(1, 2);
+const char *LamActivity(void);
 PetscErrorCode LamReportProgress(const LamReporter *reporter, PetscInt64 done, PetscInt64 total, PetscInt64 failed);
 
 PetscBool LamIsFirst(MPI_Comm comm); /* rank 0 */

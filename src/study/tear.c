@@ -475,6 +475,8 @@ PetscErrorCode LamTearRun(LamTear *tear)
 
   PetscFunctionBeginUser;
   for (int mode = 0; mode < LAM_TEAR_MODE_COUNT; mode++) modes += tear->mode[mode];
+  LamActivitySet("curves");
+  PetscCall(LamReportProgress(&tear->reporter, 0, turgors * modes, 0));
   for (PetscInt k = 0; k < turgors && !LamStopRequested(); k++)
     PetscCall(TearUnder(tear, tear->turgor_count ? tear->turgor[k] / tear->scene->scales.stress : tear->scene->turgor,
                         turgors * modes));
