@@ -263,8 +263,6 @@ LAM_EXPORT PetscErrorCode LamRVEResponderCreate(LamRVE rve, PetscInt points, Lam
 */
 LAM_EXPORT PetscErrorCode LamRVEModelResponderCreate(LamRVE rve, PetscInt points, PetscReal accuracy,
                                                      LamResponder *responder);
-/* Time of one assembly of residual and tangent on this machine, s; needs no MPI (used to predict cost). */
-LAM_EXPORT PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds);
 
 LAM_C_END
 

@@ -439,29 +439,3 @@ PetscErrorCode LamRVESolve(LamRVE rve, const LamLoad *load, LamRVEState state, L
   if (LamResponseHasFields(response)) state->given = given;
   PetscFunctionReturn(0);
 }
-
-PetscErrorCode LamRVETimeAssembly(const LamMicrostructure *micro, PetscInt *unknowns, PetscReal *seconds)
-{
-  const LamLoad load = LAM_REFERENCE_LOAD;
-  LamRVE rve;
-  PetscReal begin, now;
-  PetscInt repeats = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamRVECreate(PETSC_COMM_SELF, &rve));
-  PetscCall(LamRVESetMicrostructure(rve, micro));
-  PetscCall(SetUpArrays(rve));
-  begin = LamClock();
-  do {
-    PetscReal energy;
-    PetscBool valid;
-
-    PetscCall(LamAssemble(rve, &load, rve->mesh.class_X, &energy, rve->residual, &valid));
-    ++repeats;
-    now = LamClock();
-  } while (now - begin < 0.02);
-  *seconds = (now - begin) / (PetscReal)repeats;
-  *unknowns = rve->linear->n;
-  PetscCall(LamRVEDestroy(&rve));
-  PetscFunctionReturn(0);
-}

@@ -2,6 +2,7 @@
   lamella check: the model that a scene describes, and its predicted cost.
 */
 #include "app.h"
+#include "clock.h"
 #include "lamella_zone.h"
 #include "rounding.h"
 #include "map.h"
@@ -15,6 +16,7 @@ typedef struct {
   LamPlan plan;
   LamPlan *regions; /* [region] of the body; owned */
   LamCost cost;
+  PetscBool measure;             /* --measure: as long as it takes */
   char digits[256];              /* warning of rounding errors; empty: none */
   char turgor[LAM_TURGOR_TEXT];  /* warning of a turgor that the walls do not hold; empty: none */
   char zone[LAM_ZONE_TEXT + 80]; /* warning of elements too long for the lamella; empty: none */
@@ -30,12 +32,16 @@ static void FindZone(const LamPlan *plan, const LamRegion *region, Check *check)
   if (text[0]) snprintf(check->zone, sizeof(check->zone), "macro.regions: %s: %s", region->name, text);
 }
 
+#define TRIAL_SECONDS 1.2    /* of processor time since the start: trials of meshes, */
+#define TOTAL_SECONDS 1.6    /* and all: what is being factored, and the estimate of its error, still end */
+#define MEASURE_SECONDS 60.0 /* with --measure, of the parts of commands that are run */
+
 static PetscErrorCode Plan(const char path[], Check *check)
 {
   PetscFunctionBeginUser;
   PetscCall(LamSceneRead(path, &check->scene));
+  if (!check->measure) LamStopSetProcessorLimit(TRIAL_SECONDS);
   PetscCall(LamPlanMake(check->scene, &check->plan));
-  PetscCall(LamPlanCost(check->scene, &check->plan, &check->cost));
   PetscCall(LamDigitsWarning(&check->plan.micro, check->scene->accuracy, check->digits, sizeof(check->digits)));
   LamTurgorWarning(check->scene, check->turgor);
   LamZoneWarning(&check->plan.micro, &check->scene->scales, check->zone);
@@ -47,6 +53,9 @@ static PetscErrorCode Plan(const char path[], Check *check)
     PetscCall(LamPlanMake(&own, &check->regions[k]));
     if (!check->zone[0]) FindZone(&check->regions[k], &own.regions[k], check);
   }
+  LamStopSetProcessorLimit(PETSC_INFINITY);
+  PetscCall(LamPlanCost(check->scene, &check->plan, check->regions,
+                        check->measure ? MEASURE_SECONDS : TOTAL_SECONDS - LamProcessorClock(), &check->cost));
   if (!LamProcessWallsStayAlike(check->scene))
     check->why_direct =
         "moduli of the walls do not change alike: solved directly, as a database would need them as an axis";
@@ -55,9 +64,10 @@ static PetscErrorCode Plan(const char path[], Check *check)
 
 /* ---- JSON output ---- */
 
-static json_t *Cost(json_t *states, PetscReal seconds)
+static json_t *Cost(json_t *states, const LamPrediction *predicted)
 {
-  return json_pack("{s:o, s:o}", "states", states, "seconds", LamJSONReal(seconds));
+  return json_pack("{s:o, s:o, s:o}", "states", states, "seconds", LamJSONReal(predicted->seconds), "share",
+                   LamJSONReal(predicted->share));
 }
 
 static json_t *Mesh(const Check *check)
@@ -65,7 +75,8 @@ static json_t *Mesh(const Check *check)
   const LamMicrostructure *given = &check->scene->micro, *micro = &check->plan.micro;
 
   return json_pack("{s:I, s:I, s:o, s:b}", "along", (json_int_t)micro->along, "through", (json_int_t)micro->through,
-                   "grading", LamJSONReal(micro->grading), "chosen", !given->along || !given->through);
+                   "grading", LamJSONReal(micro->grading), "chosen",
+                   (!given->along || !given->through) && !check->plan.trial.stopped);
 }
 
 /* Traction over opening: MPa/mm of 1. */
@@ -176,16 +187,16 @@ static PetscErrorCode PrintObject(const Check *check)
   const LamScene *scene = check->scene;
   const LamMicrostructure *micro = &plan->micro;
   const PetscReal MPa = scene->scales.stress * 1e-6;
+  const LamPrediction *cost = check->cost.of;
   json_t *o;
 
   PetscFunctionBeginUser;
-  o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:o}", "scene", scene->path,
-                "plane_strain", !IsAround(scene), "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1],
-                "interface", LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law],
-                "turgor", LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy",
-                LamJSONReal(scene->accuracy), "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns,
-                "seconds_per_assembly", LamJSONReal(check->cost.assembly), "seconds_per_state",
-                LamJSONReal(check->cost.state), "memory_mb", LamJSONReal(check->cost.memory));
+  o = json_pack("{s:s, s:b, s:[I,I], s:s, s:s, s:o, s:b, s:o, s:o, s:I, s:o}", "scene", scene->path, "plane_strain",
+                !IsAround(scene), "cells", (json_int_t)micro->cells[0], (json_int_t)micro->cells[1], "interface",
+                LamInterfaceLawNames[micro->interface], "wall_law", LamWallLawNames[micro->wall.law], "turgor",
+                LamJSONReal(scene->turgor * MPa), "sealed", scene->sealed, "accuracy", LamJSONReal(scene->accuracy),
+                "mesh", Mesh(check), "unknowns", (json_int_t)plan->unknowns, "memory_mb",
+                LamJSONReal(check->cost.memory));
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_LIB, "the plan cannot be written as JSON");
   json_object_set_new(o, "rounding", /* a bound of that of the tangent; a warning if it is beyond the accuracy */
                       json_pack("{s:o, s:s?}", "tangent", LamJSONReal(LamTangentRounding(micro)), "warning",
@@ -204,28 +215,27 @@ static PetscErrorCode PrintObject(const Check *check)
   if (micro->interface == LAM_INTERFACE_LAMELLA) json_object_set_new(o, "lamella", Lamella(micro, &scene->scales));
   if (LamWallsRelax(micro)) json_object_set_new(o, "relaxation", Relaxation(&micro->relaxation));
   if (LamWallsTear(micro)) json_object_set_new(o, "tearing", Tearing(micro, &scene->scales));
-  if (plan->load_states)
-    json_object_set_new(o, "load",
-                        Cost(json_integer(plan->load_states), (PetscReal)plan->load_states * check->cost.state));
+  if (plan->load_states) json_object_set_new(o, "load", Cost(json_integer(plan->load_states), &cost[LAM_PLANNED_RVE]));
   if (scene->has_sample)
-    json_object_set_new(o, "sample",
-                        plan->sample_states ? Cost(json_integer(plan->sample_states),
-                                                   (PetscReal)plan->sample_states * check->cost.state)
-                                            : Cost(json_null(), NAN));
+    json_object_set_new(
+        o, "sample",
+        Cost(plan->sample_states ? json_integer(plan->sample_states) : json_null(), &cost[LAM_PLANNED_BUILD]));
   if (scene->has_map) {
-    json_t *map = Cost(json_integer(plan->map_states), check->cost.map);
+    json_t *map = Cost(json_integer(plan->map_states), &cost[LAM_PLANNED_MAP]);
 
     json_object_set_new(map, "points", json_integer(plan->map_points));
     json_object_set_new(o, "map", map);
   }
   if (scene->has_process)
-    json_object_set_new(
-        o, "process",
-        json_pack("{s:o, s:b}", "duration", LamJSONReal(scene->process.duration), "database", !check->why_direct));
+    json_object_set_new(o, "process",
+                        json_pack("{s:o, s:b, s:o, s:o}", "duration", LamJSONReal(scene->process.duration), "database",
+                                  !check->why_direct, "seconds", LamJSONReal(cost[LAM_PLANNED_PROCESS].seconds),
+                                  "share", LamJSONReal(cost[LAM_PLANNED_PROCESS].share)));
   if (scene->has_macro) {
-    json_t *macro = Cost(json_integer(plan->macro_states), (PetscReal)plan->macro_states * check->cost.point);
+    json_t *macro = json_pack("{s:I, s:I, s:o, s:o}", "steps", (json_int_t)scene->macro.steps, "points",
+                              (json_int_t)plan->macro_points, "seconds", LamJSONReal(cost[LAM_PLANNED_FE2].seconds),
+                              "share", LamJSONReal(cost[LAM_PLANNED_FE2].share));
 
-    json_object_set_new(macro, "points", json_integer(plan->macro_points));
     if (scene->region_count) json_object_set_new(macro, "regions", Regions(check));
     json_object_set_new(o, "macro", macro);
   }
@@ -335,7 +345,10 @@ static void PrintRelaxation(const LamRelaxation *relaxation)
 static void PrintChoice(const LamScene *scene, const LamMeshTrial *trial)
 {
   printf(" (chosen for an accuracy of %.2g %%", (double)(100 * scene->accuracy));
-  if (trial->loads) printf("; error %.2g %% at %d trial loads", (double)(100 * trial->error), (int)trial->loads);
+  if (trial->stopped)
+    printf("; not tried to the end: --measure finds the mesh that commands take");
+  else if (trial->loads)
+    printf("; error %.2g %% at %d trial loads", (double)(100 * trial->error), (int)trial->loads);
   printf(")\n");
 }
 
@@ -379,11 +392,28 @@ static void PrintModel(const Check *check)
     printf(" (as the scene says)\n");
 }
 
-static void PrintStates(const char label[], PetscInt64 states, PetscReal seconds)
+/* The time of a command, and what it is known from. */
+static void PrintTime(const Check *check, const LamPrediction *predicted)
 {
-  printf("%-12s %lld state%s, about ", label, (long long)states, states == 1 ? "" : "s");
-  PrintSeconds(seconds);
+  if (!predicted->has) {
+    putchar('\n');
+    return;
+  }
+  if (isfinite(predicted->seconds)) {
+    printf(", about ");
+    PrintSeconds(predicted->seconds);
+    if (predicted->share < 1) printf(" (%.2g %% of the time measured)", (double)(100 * predicted->share));
+  } else {
+    printf(", time unknown");
+    if (!check->measure) printf(": --measure runs a longer part");
+  }
   putchar('\n');
+}
+
+static void PrintStates(const Check *check, LamPlanned command, PetscInt states)
+{
+  printf("%-12s %" PetscInt_FMT " state%s", LamPlannedNames[command], states, states == 1 ? "" : "s");
+  PrintTime(check, &check->cost.of[command]);
 }
 
 static void PrintRegions(const Check *check)
@@ -422,10 +452,9 @@ static void PrintMacro(const Check *check)
     printf("elements of %s", macro->gmsh);
   else
     printf("%" PetscInt_FMT " elements, %" PetscInt_FMT " material points", plan->macro_elements, plan->macro_points);
-  printf(", %" PetscInt_FMT " load steps%s\n", macro->steps, macro->inflate ? " after inflation" : "");
+  printf(", %" PetscInt_FMT " load steps%s", macro->steps, macro->inflate ? " after inflation" : "");
+  PrintTime(check, &check->cost.of[LAM_PLANNED_FE2]);
   PrintRegions(check);
-  if (plan->macro_states)
-    PrintStates("  direct", plan->macro_states, (PetscReal)plan->macro_states * check->cost.point);
 }
 
 static void PrintProcess(const Check *check)
@@ -433,9 +462,10 @@ static void PrintProcess(const Check *check)
   PetscReal seconds;
   const char *unit = LamTimeUnit(check->scene->process.duration, &seconds);
 
-  printf("%-12s %.4g %s%s; %s\n", "process", (double)(check->scene->process.duration / seconds), unit,
-         check->scene->has_macro ? ", of the body" : "",
-         check->why_direct ? check->why_direct : "one database serves at all times");
+  printf("%-12s %.4g %s%s", "process", (double)(check->scene->process.duration / seconds), unit,
+         check->scene->has_macro ? ", of the body" : "");
+  PrintTime(check, &check->cost.of[LAM_PLANNED_PROCESS]);
+  printf("  %s\n", check->why_direct ? check->why_direct : "one database serves at all times");
 }
 
 static void PrintCost(const Check *check)
@@ -443,18 +473,18 @@ static void PrintCost(const Check *check)
   const LamPlan *plan = &check->plan;
   const LamScene *scene = check->scene;
 
-  printf("%-12s %" PetscInt_FMT "; one state about ", "unknowns", plan->unknowns);
-  PrintSeconds(check->cost.state);
-  printf("\n%-12s about %.0f MB per rank\n", "memory", (double)check->cost.memory);
-  if (plan->load_states) PrintStates("rve", plan->load_states, (PetscReal)plan->load_states * check->cost.state);
-  if (plan->sample_states)
-    PrintStates("build", plan->sample_states, (PetscReal)plan->sample_states * check->cost.state);
-  else if (scene->has_sample)
-    printf("%-12s states until the error is below %.2g %%\n", "build", (double)(100 * scene->sample.accuracy));
+  printf("%-12s %" PetscInt_FMT "\n", "unknowns", plan->unknowns);
+  printf("%-12s about %.0f MB per rank\n", "memory", (double)check->cost.memory);
+  if (plan->load_states) PrintStates(check, LAM_PLANNED_RVE, plan->load_states);
+  if (plan->sample_states) {
+    PrintStates(check, LAM_PLANNED_BUILD, plan->sample_states);
+  } else if (scene->has_sample) {
+    printf("%-12s states until the error is below %.2g %%", "build", (double)(100 * scene->sample.accuracy));
+    PrintTime(check, &check->cost.of[LAM_PLANNED_BUILD]);
+  }
   if (scene->has_map) {
-    printf("%-12s %" PetscInt_FMT " points, %" PetscInt_FMT " paths\n", "map", plan->map_points,
-           LamMapPathCount(scene));
-    PrintStates("  paths", plan->map_states, check->cost.map);
+    printf("%-12s %" PetscInt_FMT " points, %" PetscInt_FMT " paths", "map", plan->map_points, LamMapPathCount(scene));
+    PrintTime(check, &check->cost.of[LAM_PLANNED_MAP]);
   }
   if (scene->has_process) PrintProcess(check);
   if (scene->has_macro) PrintMacro(check);
@@ -470,21 +500,28 @@ static void PrintWarnings(const Check *check)
 PetscErrorCode LamCommandCheck(LamArgs *args, int *exit_status)
 {
   PetscBool json = PETSC_FALSE, done;
+  LamConsole console = {.command = "check"};
   Check check = {0};
   const char *path;
   const LamOption options[] = {
+      {0, "measure", LAM_OPTION_FLAG, NULL,
+       "take the time to find the mesh, and a minute to predict how long commands take, instead of 2 s in all",
+       &check.measure},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object on stdout", &json},
       {0, NULL, LAM_OPTION_FLAG, NULL, NULL, NULL},
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "check SCENE [--json]",
+  PetscCall(LamOptionsParse(args, "check SCENE [--measure] [--json]",
                             "Reads and checks a scene; prints what will be modelled and its predicted cost.", options,
                             1, &path, &done, exit_status));
   if (done) PetscFunctionReturn(0);
   PetscCall(args->start(args));
+  (void)LamConsoleReporter(&console);
   PetscCall(Plan(path, &check));
-  if (!LamAppIsRoot()) {
+  LamConsoleClear();
+  *exit_status = LamStopExitStatus();
+  if (!LamAppIsRoot() || LamStopSignal()) {
     /* ranks plan alike */
   } else if (json) {
     PetscCall(PrintObject(&check));

@@ -1,5 +1,5 @@
 /*
-  Monotonic clock for durations, independent of changes to the time of day.
+  Clocks for durations, independent of changes to the time of day.
 */
 #ifndef LAM_CLOCK_H
 #define LAM_CLOCK_H
@@ -13,6 +13,15 @@ static inline PetscReal LamClock(void)
   struct timespec now;
 
   clock_gettime(CLOCK_MONOTONIC, &now);
+  return (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
+}
+
+/* Processor time of this process since its start, s; of all its threads. */
+static inline PetscReal LamProcessorClock(void)
+{
+  struct timespec now;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
 }
 

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Queries per material point and load step: 3 to 4 Newton iterations. */
-#define ANSWERS_PER_STEP 3.5
 #define POINTS_PER_ELEMENT 9 /* 3 x 3 Gauss points of a quadratic element */
 
 /* An arbitrary order in which equal cells are adjacent; behind the last member is room that nobody sets. */
@@ -95,8 +93,6 @@ PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan)
 
     plan->macro_elements = CountElements(macro);
     plan->macro_points = POINTS_PER_ELEMENT * plan->macro_elements;
-    plan->macro_states =
-        (PetscInt64)(ANSWERS_PER_STEP * (PetscReal)plan->macro_points * (macro->steps + (macro->inflate ? 1 : 0)));
   }
   PetscFunctionReturn(0);
 }

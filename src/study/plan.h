@@ -18,10 +18,9 @@ typedef struct {
   LamMicrostructure micro; /* with along and through chosen; borrows the scene's cells */
   LamMeshTrial trial;      /* that chose the mesh */
   LamCellSpread spread;
-  PetscInt unknowns;       /* of one RVE */
-  PetscInt load_states;    /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
-  PetscInt sample_states;  /* 0 also if an accuracy determines the number */
-  PetscInt64 macro_states; /* predicted */
+  PetscInt unknowns;      /* of one RVE */
+  PetscInt load_states;   /* RVE solves of `rve`, `build` and `fe2` with direct response; 0: no such block */
+  PetscInt sample_states; /* 0 also if an accuracy determines the number */
   PetscInt macro_elements, macro_points; /* 0 also if they are in a file */
   PetscInt map_points, map_states;       /* of `map`, without the states that bracket the failure; 0: no such block */
 } LamPlan;
@@ -29,13 +28,29 @@ typedef struct {
 /* With the mesh of LamChooseMesh (mesh_choice.h). */
 PetscErrorCode LamPlanMake(const LamScene *scene, LamPlan *plan);
 
-/* What it costs on one rank of this machine. */
+/* ---- plan_cost.c ---- */
+/* Commands that a scene has a block for. */
+#define LAM_PLANNED(X)                                                                                                 \
+  X(LAM_PLANNED_RVE, "rve")                                                                                            \
+  X(LAM_PLANNED_BUILD, "build")                                                                                        \
+  X(LAM_PLANNED_MAP, "map")                                                                                            \
+  X(LAM_PLANNED_FE2, "fe2") /* with direct responses */                                                                \
+  X(LAM_PLANNED_PROCESS, "process")
+typedef enum { LAM_PLANNED(LAM_ENUM_ENTRY) LAM_PLANNED_COUNT } LamPlanned;
+extern const char *const LamPlannedNames[];
+
 typedef struct {
-  PetscReal assembly, state, point; /* seconds: one assembly, one state, one query during a macroscale step */
-  PetscReal map;                    /* seconds, with the states that bracket the failure; 0: no such block */
-  PetscReal memory;                 /* MB */
+  PetscBool has;     /* the scene has its block */
+  PetscReal seconds; /* of processor time on one core of this machine, with start and trial of meshes; NaN: unknown */
+  PetscReal share;   /* of the command that was run to predict it */
+} LamPrediction;
+typedef struct {
+  LamPrediction of[LAM_PLANNED_COUNT];
+  PetscReal memory; /* MB, per rank */
 } LamCost;
-/* plan_cost.c: times an assembly. */
-PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, LamCost *cost);
+/* Runs parts of the commands for so many seconds of processor time in all; regions: plans of those of the body. On
+   several ranks, and of RVEs too large for a part in this time, nothing is predicted. */
+PetscErrorCode LamPlanCost(const LamScene *scene, const LamPlan *plan, const LamPlan regions[], PetscReal seconds,
+                           LamCost *cost);
 
 #endif

@@ -7,6 +7,7 @@
 
 static volatile sig_atomic_t StopSignal;
 static PetscReal Deadline = PETSC_INFINITY; /* in LamClock time */
+static PetscReal ProcessorLimit = PETSC_INFINITY;
 static void (*Watch)(void);
 
 #define NEIGHBOURS 16 /* degree of the tree along which requests are sent */
@@ -101,11 +102,22 @@ void LamStopSetWatch(void (*watch)(void))
   Watch = watch;
 }
 
+void LamStopSetProcessorLimit(PetscReal seconds)
+{
+  ProcessorLimit = seconds;
+}
+
+static PetscBool IsOver(void)
+{
+  if (Deadline < PETSC_INFINITY && LamClock() > Deadline) return PETSC_TRUE;
+  return (PetscBool)(ProcessorLimit < PETSC_INFINITY && LamProcessorClock() > ProcessorLimit);
+}
+
 PetscBool LamStopRequested(void)
 {
   if (Watch) Watch();
   if (Team.n && !Team.number && Team.comm != MPI_COMM_NULL) PetscCallAbort(PETSC_COMM_SELF, Exchange());
-  return (PetscBool)(StopSignal != 0 || (Deadline < PETSC_INFINITY && LamClock() > Deadline));
+  return (PetscBool)(StopSignal != 0 || IsOver());
 }
 
 PetscBool LamStopInterrupt(void *ctx)

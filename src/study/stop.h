@@ -15,6 +15,8 @@ void LamStopSetWatch(void (*watch)(void));
 /* From this LamClock time on LamStopRequested is true, without a signal; PETSC_INFINITY: never. For work with a time
    limit on one rank. */
 void LamStopSetDeadline(PetscReal clock);
+/* The same for processor time of this process, s. */
+void LamStopSetProcessorLimit(PetscReal seconds);
 /*
   Between these two collective calls, a request on one rank of `comm` applies to all: a rank sends it when it calls
   LamStopRequested, and the others receive it when they do.

@@ -31,7 +31,9 @@ YAML
 
 # mesh WANTED: along and through of the plan
 mesh() {
-  "$lamella" check scene.yaml --json >plan.json || fail "fails: $(cat scene.yaml)"
+  # without the body, whose prediction is long
+  sed '/^macro:/,/steps: 3/d' scene.yaml >part.yaml
+  "$lamella" check part.yaml --measure --json >plan.json || fail "fails: $(cat scene.yaml)"
   found="$(number plan.json along) $(number plan.json through)"
   [ "$found" = "$1" ] || fail "chooses $found elements instead of $1: $(grep -E 'cell:|accuracy|mesh' scene.yaml)"
 }
@@ -49,7 +51,8 @@ mesh "3 1"
 scene "[1, 1]" 11.25 0.001 "  mesh: {along: 5}"
 mesh "5 4"
 scene "[1, 1]" 11.25 0.01 "  interface: {law: contact, cohesion: 0.005 MPa}"
-mesh "16 2" # the tangents of cells in contact move the body
+"$lamella" check scene.yaml --json >plan.json
+grep -q '"mesh": {"along": 16, "through": 2' plan.json || fail "the tangents of cells in contact move the body: $(cat plan.json)"
 
 # the numbers of states of each block
 [ "$(number plan.json states)" = 2 ] || fail "counts $(number plan.json states) states of the load"
@@ -94,8 +97,8 @@ has text.txt "a patch of 2 columns and 3 rows of cells between grips, lateral si
 
 # for a person: model, mesh, cost
 "$lamella" check "$source/tests/scenes/tissue-block.yaml" >text.txt || fail "exit status $?"
-has text.txt "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "10 elements along" "596; one state" "about .* MB" \
-  "576 material points"
+has text.txt "plane strain" fibre_mooney_rivlin bonded "0.02 MPa" "10 elements along" "^unknowns *596$" "about .* MB" \
+  "576 material points.*, about .* s (.* % of the time measured)"
 
 # a lamella: the opening at failure 2 G/strength, the stiffness that it chooses, and the elements that would resolve it
 tissue interface='law: lamella, strength: 0.05 MPa, fracture_energy: 1 J/m^2, residual_cohesion: 0.001 MPa' \
@@ -127,3 +130,21 @@ grep -qE "^rounding .* digits? of the tangent, fewer than an accuracy of 0.001 %
 "$lamella" rve stiff.yaml --quiet >/dev/null 2>err.txt
 [ "$(grep -c "digits\? of the tangent" err.txt)" = 1 ] || fail "rve does not say it once: $(cat err.txt)"
 "$lamella" check scene.yaml --json | grep -q '"warning": null' || fail "speaks of rounding without need"
+
+# predictions: of what ends within the time they are measured, else extrapolated; the whole takes 2 s of a processor, and a
+# trial that would take longer is left unfinished
+seconds() { TIMEFORMAT='%U %S'; { time "$@" >out.txt 2>err.txt; } 2>&1 | awk '{print $1 + $2}'; }
+"$lamella" check "$source/tests/scenes/rate-loop.yaml" --json >plan.json
+grep -qE '"process": \{[^}]*"seconds": [0-9.]+, "share": 1(\.0)?\}' plan.json || fail "does not predict a short process: $(cat plan.json)"
+"$lamella" check "$source/tests/scenes/shear-bonded.yaml" --json >plan.json
+awk "BEGIN { a = $(number plan.json seconds); b = $(seconds "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --quiet); exit !(a < 3 * b && b < 3 * a) }" ||
+  fail "predicts $(number plan.json seconds) s of shear-bonded.yaml, which takes $(seconds "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --quiet)"
+tissue cell='apothem: 75 um, wall_thickness: 2 um' interface='law: contact, cohesion: 0.005 MPa' mesh='grading: 0.6' >long.yaml <<'YAML'
+  cells: [3, 3]
+load:
+  - {ramp: {to: [[1, 0.5], [0, 1]], steps: 40}}
+accuracy: 0.001
+YAML
+took=$(seconds "$lamella" check long.yaml)
+awk "BEGIN { exit !($took < 2.5) }" || fail "takes $took s of a processor"
+has out.txt "not tried to the end: --measure finds the mesh that commands take"

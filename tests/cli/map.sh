@@ -64,7 +64,7 @@ expect 2 "$lamella" query a.h5 -F "1 0 0 1"
 # --resume of a complete map solves nothing; the plan counts points
 expect 0 "$lamella" map s.yaml -o a.h5 --resume --json
 [ ! -s out.txt ] || fail "solved again: $(head -c 200 out.txt)"
-"$lamella" check s.yaml --json | grep -q '"map": {"states": 27, "seconds": [0-9.e-]*, "points": 15}' ||
+"$lamella" check s.yaml --json | grep -q '"map": {"states": 27, "seconds": [0-9.e-]*, "share": [0-9.]*, "points": 15}' ||
   fail "the plan: $("$lamella" check s.yaml --json)"
 
 # stopped by a signal, and killed: what is committed stays, and --resume gives the same map
