@@ -2,6 +2,8 @@
 import ctypes
 import signal
 import sys
+import threading
+import time
 import traceback
 from collections.abc import Callable
 from typing import Any
@@ -11,12 +13,21 @@ from ._library import Error, InputError
 USAGE, INPUT, UNSOLVED, FILES, FAULT = 1, 2, 3, 4, 70  #: exit statuses (docs/reference/commands.md)
 INTERRUPTED = 130
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
+WIDTH, SILENT = 24, 1.0  # of a bar; s, before and between lines without news
+_command = "lamella"  # what `served` serves
+_lines: list["_Line"] = []  # what it shows
 
 
 def served(name: str, run: Callable[[], int | None]) -> int:
     """Exit status of `run`, whose own one is 0 where it returns nothing; errors are told after the command's name."""
+    global _command
+    _command = name
     try:
-        return run() or 0
+        try:
+            return run() or 0
+        finally:
+            for line in _lines:
+                line.end()
     except InputError as error:
         status, message = INPUT, str(error)
     except OSError as error:
@@ -39,13 +50,62 @@ def _words(error: OSError) -> str:
     return (f"{error.filename}: " if error.filename is not None else "") + (error.strerror or str(error))
 
 
+class _Line:
+    """The line of src/app/console.c: what is done, how much of it, and how long the rest takes."""
+
+    def __init__(self, what: str) -> None:
+        self.what, self.start = what, time.monotonic()
+        self.done, self.total, self.told = 0, 0, 0.0
+        self.lock, self.over = threading.Lock(), threading.Event()
+        threading.Thread(target=self.follow, daemon=True).start()
+
+    def follow(self) -> None:
+        while not self.over.wait(SILENT):
+            self.draw()
+
+    def draw(self) -> None:
+        with self.lock:
+            if not self.over.is_set():
+                print("\r\033[K" + self.text(time.monotonic()), end="", file=sys.stderr, flush=True)
+
+    def text(self, now: float) -> str:
+        words = [f"{_command}: {self.what}"]
+        if self.total:
+            filled = WIDTH * self.done // self.total
+            words.append(f"[{'#' * filled}{'.' * (WIDTH - filled)}] {self.done}/{self.total}")
+        words.append(_duration(now - self.start))
+        if self.done:
+            rate = self.done / max(self.told - self.start, 1e-9)
+            left = max(0.0, (self.total - self.done) / rate - (now - self.told))
+            words.append(f" {rate:.3g}/s  {_duration(left)} left")
+        return " ".join(words)
+
+    def tell(self, done: int, total: int) -> None:
+        self.done, self.total, self.told = done, total, time.monotonic()
+        if done < total:
+            self.draw()
+        else:
+            self.end()
+
+    def end(self) -> None:
+        with self.lock:
+            if not self.over.is_set():
+                print(end="\r\033[K", file=sys.stderr, flush=True)
+            self.over.set()
+
+
+def _duration(seconds: float) -> str:
+    minutes, s = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02}:{s:02}" if minutes >= 60 else f"{minutes}:{s:02}"
+
+
 def progress(what: str) -> Callable[[int, int], None]:
-    """Tells on a terminal how many are done: "3 of 64 samples"."""
-    def told(done: int, total: int) -> None:
-        if sys.stderr.isatty():
-            print(f"\r\033[K{done} of {total} {what}" if done < total else "\r\033[K", end="", file=sys.stderr,
-                  flush=True)
-    return told
+    """Shows on a terminal that this is being done, until the function that it gives has been told (done, total) with all
+    done; elsewhere nothing."""
+    if not sys.stderr.isatty():
+        return lambda done, total: None
+    _lines.append(_Line(what))
+    return _lines[-1].tell
 
 
 def end_with_program() -> None:

@@ -17,7 +17,7 @@ line in place of the model.
 import json
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ import numpy as np
 
 from . import InputError, misfit, parallel, scene_dict
 from ._files import make_folder, write_whole
-from ._served import UNSOLVED, end_with_program, served
+from ._served import UNSOLVED, end_with_program, progress as shown, served
 from .measured import Curve, Experiment, Figures, experiment
 from .parameters import Parameter, Range, uncertain, varied
 from .program import SceneLike
@@ -167,11 +167,12 @@ class Fit:
         return (", ".join(f"{p.key} {'up' if c > 0 else 'down'}" for p, c in parts) +
                 " together: the data hardly tell them apart")
 
-    def profile(self, processes: int | None = None) -> None:
-        """Finds `profiles` and `profiled`: some 17 fits of the other parameters for each."""
+    def profile(self, processes: int | None = None,
+                progress: Callable[[int, int], None] = lambda done, total: None) -> None:
+        """Finds `profiles` and `profiled`: some 17 fits of the other parameters for each. progress(done, total)."""
         jobs = [(self.problem, self.u, k) for k in range(len(self.u))]
         limit = self.chi2 + self.width**2 * self.variance
-        for k, points in enumerate(parallel.each(_profiles, jobs, processes)):
+        for k, points in enumerate(parallel.each(_profiles, jobs, processes, progress)):
             u, cost = np.array(points).T
             if cost.min() < self.chi2 - 1e-3 * self.variance:
                 self.untold.append(f"{self.parameters[k].key}: its profile has a smaller sum of squares, "
@@ -229,11 +230,12 @@ class Fit:
 
 
 def calibrate(parameters: dict[str, Range] | list[Parameter], curves: Sequence[Experiment], starts: int = 4,
-              processes: int | None = 1) -> Fit:
+              processes: int | None = 1, progress: Callable[[int, int], None] = lambda done, total: None) -> Fit:
     """Fits parameters to all experiments at once.
 
     parameters: {key: (low, high)} with units, or Parameters; curves: Curves and Figures. starts: how many, the first in
-    the middle of the bounds; processes: starts at a time, None: as many as processors. InputError names a key that a
+    the middle of the bounds; processes: starts at a time, None: as many as processors; progress(done, total): after each.
+    InputError names a key that a
     scene does not take, and a column or figure that no response has.
     """
     from scipy.stats import qmc
@@ -245,7 +247,7 @@ def calibrate(parameters: dict[str, Range] | list[Parameter], curves: Sequence[E
     problem.check()
     sobol = qmc.Sobol(n, scramble=False).random_base2(math.ceil(math.log2(max(starts, 2))))
     places = np.vstack([np.full((1, n), 0.5), sobol[1:starts]])
-    fits = parallel.each(_starts, [(problem, u) for u in places], processes)
+    fits = parallel.each(_starts, [(problem, u) for u in places], processes, progress)
     best, chi2 = min(fits, key=lambda f: f[1])
     return Fit(problem, best, chi2, [cost for _, cost in fits])
 
@@ -269,9 +271,10 @@ def run(request: dict[str, Any]) -> int:
     scenes, data = files[::2], files[1::2]
     parameters, of = _shared(scenes)
     experiments = [experiment(*each) for each in zip(scenes, data, of)]
-    fit = calibrate(parameters, experiments, request.get("starts", 4), request.get("processes"))
+    fit = calibrate(parameters, experiments, request.get("starts", 4), request.get("processes"),
+                    shown("starts of the fit"))
     if request.get("profile"):
-        fit.profile(request.get("processes"))
+        fit.profile(request.get("processes"), shown("profiles"))
     told = fit.told()
     print(json.dumps(told) if request.get("json") else fit)
     if folder:

@@ -1,8 +1,11 @@
 """Jobs in processes of their own, so that processors are shared and a crash is an exception."""
+import contextlib
 import os
 import pickle
 import subprocess
 import sys
+import tempfile
+import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from pathlib import Path
@@ -16,44 +19,71 @@ from .program import environment
 MISTAKE = 2  # exit status of a worker whose input is wrong
 
 
-def _there(function: Callable[[list[Any]], Any], jobs: list[Any], running: list["subprocess.Popen[bytes]"]) -> Any:
-    """function(jobs) in another process, which is added to those that run."""
+def _there(function: Callable[[list[Any]], Any], jobs: list[Any], running: list["subprocess.Popen[bytes]"],
+           found: Callable[[], None]) -> list[Any]:
+    """Results of jobs in another process, which is added to those that run; found() is called after each."""
     package = str(Path(__file__).resolve().parents[1])
     paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
     words = [sys.executable, "-c", "from lamella import parallel; parallel.work()"]
-    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    solved: list[Any] = []
+    with tempfile.TemporaryFile() as err, \
+         subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=err,
                           env=environment(PYTHONPATH=os.pathsep.join(paths))) as worker:
         running.append(worker)
-        out, err = worker.communicate(pickle.dumps((function, jobs)))
+        assert worker.stdin and worker.stdout
+        with contextlib.suppress(EOFError, BrokenPipeError):  # it has ended, and its status says how
+            with worker.stdin as jobs_of:
+                jobs_of.write(pickle.dumps((function, jobs)))
+            for _ in jobs:
+                solved.append(pickle.load(worker.stdout))
+                found()
+        worker.wait()
+        err.seek(0)
+        message = err.read().decode().strip()
     if worker.returncode == MISTAKE:
-        raise InputError(err.decode().strip())
+        raise InputError(message)
     if worker.returncode:
-        raise Error(f"a worker has ended with status {worker.returncode}: {err.decode().strip()}")
-    return pickle.loads(out)
+        raise Error(f"a worker has ended with status {worker.returncode}: {message}")
+    return solved
 
 
 def work() -> None:
-    """A worker: a function of this package and its jobs on stdin, their results on stdout, all pickled."""
+    """A worker: a function of this package and its jobs on stdin, their results on stdout as they come, all pickled."""
     end_with_program()
     out, sys.stdout = sys.stdout.buffer, sys.stderr
     try:
         function, jobs = pickle.load(sys.stdin.buffer)
-        solved = list(function(jobs))
+        for job in jobs:
+            out.write(pickle.dumps(function([job])[0]))
+            out.flush()
     except InputError as error:
         print(error, file=sys.stderr)
         sys.exit(MISTAKE)
-    out.write(pickle.dumps(solved))
 
 
-def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: int | None = None) -> list[Any]:
+def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: int | None = None,
+         progress: Callable[[int, int], None] = lambda done, total: None) -> list[Any]:
     """Results of jobs, in their order. function: of this package, takes a list of jobs and returns theirs; processes:
-    at a time, default the number of processors; 1: in this process. Where the whole is interrupted, so are they."""
+    at a time, default the number of processors; 1: in this process. progress(done, total): after each. Where the whole is
+    interrupted, so are they."""
+    done, lock = 0, threading.Lock()
+
+    def found() -> None:
+        nonlocal done
+        with lock:
+            done += 1
+            progress(done, len(jobs))
+
     if processes == 1 or not jobs:
-        return list(function(list(jobs)))
+        solved = []
+        for job in jobs:
+            solved += function([job])
+            found()
+        return solved
     n = min(processes or len(os.sched_getaffinity(0)), len(jobs))
     running: list["subprocess.Popen[bytes]"] = []
     with ThreadPoolExecutor(n) as pool:
-        futures = [pool.submit(_there, function, list(jobs[k::n]), running) for k in range(n)]
+        futures = [pool.submit(_there, function, list(jobs[k::n]), running, found) for k in range(n)]
         try:
             parts = [future.result() for future in futures]
         except BaseException:

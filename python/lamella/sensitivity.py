@@ -303,21 +303,8 @@ def _checked(jobs: list[Job], parameters: list[Parameter], values: np.ndarray) -
     return jobs
 
 
-def _solved(jobs: list[Job], processes: int | None, progress: Callable[[int, int], None] | None) -> list[Found]:
-    """In ten parts where somebody waits for their progress: processes take half a second to start."""
-    found: list[Found] = []
-    step = max(1, math.ceil(len(jobs) / 10)) if progress else len(jobs)
-    for start in range(0, len(jobs), step):
-        if progress:
-            progress(start, len(jobs))
-        found += parallel.each(_evaluate, jobs[start:start + step], processes)
-    if progress:
-        progress(len(jobs), len(jobs))
-    return found
-
-
 def study(scene: SceneLike, evaluations: int = 1000, figures: Sequence[str] | None = None, seed: int = 0,
-          processes: int | None = None, progress: Callable[[int, int], None] | None = None) -> Sensitivity:
+          processes: int | None = None, progress: Callable[[int, int], None] = lambda done, total: None) -> Sensitivity:
     """Elasticities and Sobol' indices of a scene's figures by the keys in its block `uncertain`.
 
     evaluations: about so many, n (k + 2) of k keys with a power of two n; four more for each key, and one, give the
@@ -346,7 +333,7 @@ def study(scene: SceneLike, evaluations: int = 1000, figures: Sequence[str] | No
             for i, p in enumerate(parameters) for steps in _offsets(p, own[i])[0]]
     values = np.concatenate([np.array([v for _, v in near]).reshape(-1, k), told.samples])
     jobs = _checked([(path, varied(base, parameters, v), failure) for v in values], parameters, values)
-    found = _solved(jobs, processes, progress)
+    found = parallel.each(_evaluate, jobs, processes, progress)
     told.found = found[len(near):]
     told.take(names, failure, here, [(i, f) for (i, _), f in zip(near, found)])
     return told

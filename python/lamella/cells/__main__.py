@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from .. import InputError, quantity
-from .._served import USAGE, served
+from .._served import USAGE, progress as shown, served
 from ..tissue import Tissue
 from . import borders, picture as pictures
 from .walls import Walls
@@ -190,7 +190,9 @@ def table(tissue: Tissue, report: dict[str, Any]) -> list[str]:
 
 
 def run(told: argparse.Namespace) -> None:
+    ended = shown("finds the cells and their walls")
     tissue, report = convert(told)
+    ended(1, 1)
     tissue.write(told.output)
     if told.json:
         print(json.dumps({"file": told.output, **report, "pixels": list(report["pixels"]), "got": tissue.statistics()}))

@@ -2,19 +2,9 @@
 import json
 import sys
 
-from .._served import served
+from .._served import progress, served
 from . import draw, fields, save
 from .page import check_path
-
-
-def _progress(total):
-    """A line on the terminal that tells how many pages are written."""
-    if not sys.stderr.isatty():
-        return None
-
-    def tell(done):
-        print(f"\r\033[K{done} of {total} pages" if done < total else "\r\033[K", end="", file=sys.stderr, flush=True)
-    return tell
 
 
 def run(request):
@@ -25,7 +15,8 @@ def run(request):
         check_path(output)
     drawn = draw(path, **request)
     for output in outputs:
-        save(drawn, output, dpi, None if quiet or not isinstance(drawn, list) else _progress(len(drawn)))
+        tell = progress("pages") if isinstance(drawn, list) and not quiet else None
+        save(drawn, output, dpi, tell and (lambda done, tell=tell: tell(done, len(drawn))))
         if not silent:
             print(f"wrote {output}", flush=True)
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import InputError, quantity
-from .._served import served
+from .._served import progress as shown, served
 from .make import Asked, make
 from .report import table
 
@@ -46,7 +46,9 @@ def asked_of(request: dict[str, Any]) -> Asked:
 
 def run(request: dict[str, Any]) -> None:
     """Makes the tissue, writes it, and tells what it is."""
+    ended = shown("makes the tissue")
     tissue, output = make(asked_of(request)), request["output"]
+    ended(1, 1)
     tissue.write(output)
     if request.get("json"):
         print(json.dumps({"file": output, "asked": tissue.made_by["asked"], "got": tissue.made_by["got"]}))

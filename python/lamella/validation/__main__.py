@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import InputError
 from .._files import make_folder, write_whole
-from .._served import end_with_program, served
+from .._served import end_with_program, progress as shown, served
 from . import Experiment, experiments
 from .page import counts, misses, number, page, summary
 
@@ -46,9 +46,10 @@ def run(request: dict[str, Any]) -> None:
         if name not in of:
             raise InputError(f"--only {name}: there is no such experiment; there are {', '.join(of)}")
     told = []
-    for name in names:
-        start = time.monotonic()
+    for k, name in enumerate(names):
+        start, ended = time.monotonic(), shown(f"experiment {k + 1} of {len(names)}, {name}")
         told.append(of[name]())
+        ended(1, 1)
         if request.get("json"):
             print(json.dumps(_told(told[-1])), flush=True)
         else:
