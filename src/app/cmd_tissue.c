@@ -57,6 +57,9 @@ PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status)
                         !r.output  ? "the first"
                         : !r.cells ? "the second"
                                    : "the third");
+  else if (r.direction && !r.elongation)
+    (void)LamUsageError("tissue", exit_status,
+                        "--direction: is of --elongation RATIO, which is missing: cells as wide as long have none");
   else
     PetscCall(Make(&r, exit_status));
   PetscFunctionReturn(0);

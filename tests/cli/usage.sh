@@ -72,3 +72,9 @@ case $(cat status.txt) in
 4) grep -q "standard output" err.txt || fail "a closed pipe is not told: $(cat err.txt)" ;;
 *) fail "a closed pipe ends with status $(cat status.txt)" ;;
 esac
+
+# options and blocks that do nothing by themselves
+expect 1 "--direction: is of --elongation RATIO, which is missing" "$lamella" tissue -o t.json --cells 9 --size "60 um" --direction "30 deg"
+expect 0 "failure.yaml: strength: is not used without --failure" "$lamella" rve "$source/tests/scenes/failure.yaml"
+expect 0 "failure" "$lamella" rve "$source/tests/scenes/failure.yaml" --failure
+! grep -q "not used" err.txt || fail "strengths that --failure uses are said not to be used: $(cat err.txt)"
