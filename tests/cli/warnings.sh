@@ -10,11 +10,11 @@ warned() {
   expect 0 "$lamella" "$1" "$2" --json --quiet "${@:4}"
   [ "$(grep -c "^lamella $1: .*$3" err.txt)" = 1 ] || fail "$1 $2 does not tell \"$3\": $(cat err.txt)"
 }
-# silent COMMAND SCENE
+# silent COMMAND SCENE [OPTIONS]
 silent() {
   expect 0 "$lamella" check "$2" --json
   grep -q '"warnings": \[\]' out.txt || fail "check $2 warns: $(cat out.txt)"
-  expect 0 "$lamella" "$1" "$2" --json
+  expect 0 "$lamella" "$1" "$2" --json "${@:3}"
   [ ! -s err.txt ] || fail "$1 $2 warns: $(cat err.txt)"
 }
 soft() { tissue turgor="mode: prescribed, pressure: ${1:-0.02} MPa" mesh='along: 2, through: 1'; }
@@ -135,7 +135,7 @@ warned build tight.yaml 'tight.yaml:6:40: rve.turgor.pressure: 0.4 MPa: stretche
 { inflated '0.1 MPa' && printf 'strength: {wall: 0.5 MPa}\n'; } >weak.yaml
 warned rve weak.yaml 'weak.yaml:6:40: rve.turgor.pressure: 0.1 MPa: puts a mean tension of about 1.02 MPa on the walls of free tissue, strength.wall is 0.5 MPa; check'
 sed 's/inflate: true/F: [[1, 0], [0, 1]]/' weak.yaml >held.yaml
-silent rve held.yaml
+silent rve held.yaml --failure
 # tissue that is free along the cells' axis, too: that of a body around an axis, where it is the hoop
 slender() { # TURGOR
   tissue cell='apothem: 75 um, wall_thickness: 5.025 um' wall='law: fibre_mooney_rivlin, C1: 1 MPa, C2: 0.1 MPa, C4: 10 MPa' \
