@@ -14,6 +14,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -35,7 +36,7 @@ __all__ = ["Scene", "RVE", "Database", "Responses", "Result", "fe2", "process", 
 
 def _tensors(values: ArrayLike, what: str, out_of_plane: float) -> np.ndarray:
     """[..., 3, 3] of 3 x 3 tensors, or of 2 x 2 in the plane, whose 33 is out_of_plane; the rest is 0 or NaN, as it."""
-    tensors = np.asarray(values, dtype=float)
+    tensors = _array(values, what)
     if tensors.shape[-2:] == (2, 2):
         whole = np.full(tensors.shape[:-2] + (3, 3), 0 * out_of_plane)
         whole[..., :2, :2], whole[..., 2, 2] = tensors, out_of_plane
@@ -45,6 +46,20 @@ def _tensors(values: ArrayLike, what: str, out_of_plane: float) -> np.ndarray:
     return tensors
 
 
+def _array(values: ArrayLike, what: str) -> np.ndarray:
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{what}: {values!r:.60}: an array of numbers is wanted, in SI units") from None
+
+
+def _pressure(values: ArrayLike, what: str) -> np.ndarray:
+    array = _array(values, what)
+    if not np.isfinite(array).all():
+        raise InputError(f"{what}: {array[~np.isfinite(array)][0]}: is not a finite number")
+    return array
+
+
 def rows_of(defaults: Sequence[float], F: ArrayLike, turgor: ArrayLike | None, cohesion: ArrayLike | None,
             P: ArrayLike | None = None) -> tuple[np.ndarray, np.ndarray | None]:
     """Loads [..., 11] and P [..., 9], or None, of all states, whose shape is that of the arguments broadcast. defaults:
@@ -52,7 +67,13 @@ def rows_of(defaults: Sequence[float], F: ArrayLike, turgor: ArrayLike | None, c
     F = _tensors(F, "F", 1.0)
     P = None if P is None else _tensors(P, "P", np.nan)
     pressures = [defaults[0] if turgor is None else turgor, defaults[1] if cohesion is None else cohesion]
-    shape = np.broadcast_shapes(F.shape[:-2], () if P is None else P.shape[:-2], *(np.shape(p) for p in pressures))
+    pressures = [_pressure(p, what) for p, what in zip(pressures, ("turgor", "cohesion"))]
+    shapes = [F.shape[:-2], () if P is None else P.shape[:-2], *(p.shape for p in pressures)]
+    try:
+        shape = np.broadcast_shapes(*shapes)
+    except ValueError:
+        words = ", ".join(f"{name} {of}" for name, of in zip(("F", "P", "turgor", "cohesion"), shapes))
+        raise InputError(f"the states of the loads have shapes that do not broadcast: {words}") from None
     rows = np.empty(shape + (11,))
     rows[..., :9] = np.broadcast_to(F, shape + (3, 3)).reshape(shape + (9,))
     rows[..., 9], rows[..., 10] = pressures
@@ -76,7 +97,7 @@ def _numbers(function: Any, handle: Any, count: int) -> list[float]:
 class Responses:
     """Responses of an array of states. Each member is an attribute, an array of the states' shape with the member's own
     axes behind: `P` [..., 3, 3] Pa, `tangent` [..., 3, 3, 3, 3] Pa, `energy` J/m^3, `stable`, `lumen_fraction`, ...
-    `help(name)` tells what a member is and its unit. Reals that are not known are NaN."""
+    `help(name)` says what a member is and its unit. Reals that are not known are NaN."""
 
     dtype = DTYPE  #: of the array
 
@@ -85,7 +106,7 @@ class Responses:
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in NAMES:
-            raise AttributeError(f"a response has no {name}; its members: {', '.join(NAMES)}")
+            raise AttributeError(_no_member(name))
         kind, values = MEMBERS[NAMES.index(name)][1], self.array[name]
         if kind == "b":
             return values.astype(bool)
@@ -103,6 +124,12 @@ class Responses:
         """Whether a state has an answer that is stable."""
         return self.status == "converged"
 
+    def __repr__(self) -> str:
+        """Shape, and how many states have which status."""
+        names, counts = np.unique(np.asarray(self.status, str), return_counts=True)
+        states = "1 state" if self.array.size == 1 else f"{self.array.size} states of the shape {self.array.shape}"
+        return f"<lamella.Responses: {states}: " + ", ".join(f"{n} {name}" for name, n in zip(names, counts)) + ">"
+
     def __getitem__(self, index: Any) -> "Responses":
         return Responses(self.array[index])
 
@@ -114,11 +141,16 @@ class Responses:
 
     @staticmethod
     def help(name: str) -> str:
-        """What a member is, and its unit."""
+        """What a member is, and its unit. InputError: there is none of that name."""
         for member in MEMBERS:
             if member[0] == name:
                 return f"{member[5]} ({member[4]})"
-        raise KeyError(name)
+        raise InputError(_no_member(name))
+
+
+def _no_member(name: str) -> str:
+    near = [n for n in NAMES if str(name).lower() in n.lower()] or get_close_matches(str(name), NAMES)
+    return f"a response has no {name}; " + (f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(NAMES)}")
 
 
 def parse_yaml(text: str) -> Any:
@@ -135,11 +167,30 @@ def parse_yaml(text: str) -> Any:
     return yaml.load(text, Loader)
 
 
+def scene_text(scene: dict[str, Any]) -> str:
+    """A scene of dictionaries as text. InputError: a value is none that scenes have."""
+    def plain(value: Any) -> Any:
+        if isinstance(value, os.PathLike):
+            return os.fspath(value)
+        if isinstance(value, (np.ndarray, np.generic)):
+            return value.tolist()
+        raise InputError(f"the scene: {value!r:.60}: is of type {type(value).__name__}; scenes have dictionaries, lists, "
+                         "texts and numbers")
+    try:
+        return json.dumps(scene, default=plain)
+    except (TypeError, ValueError, RecursionError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"the scene: {error}") from None
+
+
 def scene_dict(scene: "str | os.PathLike[str] | dict[str, Any] | Scene") -> dict[str, Any]:
-    """A scene as nested dictionaries: of a path, of a text (with a line break in it), of a Scene, or a dictionary as it
-    is. InputError: it cannot be read; with file, line and column."""
+    """A scene as nested dictionaries of numbers, texts and lists: of a path, of a text (with a line break in it), of a
+    Scene, or of a dictionary, which may have NumPy's numbers and arrays. InputError: it cannot be read; with file, line
+    and column."""
     if isinstance(scene, dict):
-        return scene
+        found: dict[str, Any] = json.loads(scene_text(scene))
+        return found
     if isinstance(scene, Scene):
         scene = scene.path if scene.text is None else scene.text + "\n"
     is_text = isinstance(scene, str) and "\n" in scene
@@ -153,9 +204,15 @@ def scene_dict(scene: "str | os.PathLike[str] | dict[str, Any] | Scene") -> dict
     return found
 
 
+def without_lines(message: str, path: str) -> str:
+    """A message without the line and column of a text that nobody has written, and with numbers of six digits."""
+    message = re.sub(rf"{re.escape(path)}:\d+:\d+: ", f"{path}: ", message)
+    return re.sub(r"\b\d+\.\d{6,}\b", lambda number: f"{float(number[0]):.6g}", message)
+
+
 class Scene:
-    """A scene from a file, from a dictionary, or with `text` from a text, which messages then call `path`. Mistakes
-    raise InputError.
+    """A scene from a file, from a dictionary, whose numbers and arrays may be NumPy's, or with `text` from a text or a
+    dictionary, which messages then call `path`. Mistakes raise InputError.
 
     apothem [m], stress_unit: C1 + C2 of the walls [Pa]; pressures: turgor and cohesion of the block `rve` [Pa].
     F, P [n, 3, 3], turgor and cohesion [n], Pa: the loads of its block `load`, which RVE.solve takes. NaN in F: P is
@@ -164,12 +221,21 @@ class Scene:
     solves all.
     """
 
-    def __init__(self, path: str | os.PathLike[str] | dict[str, Any] = "scene", text: str | None = None) -> None:
+    def __init__(self, path: str | os.PathLike[str] | dict[str, Any] = "scene",
+                 text: str | dict[str, Any] | None = None) -> None:
         if isinstance(path, dict):
-            path, text = "scene", json.dumps(path)
-        self.path, self.text = os.fspath(path), text
+            path, text = "scene", path
+        elif not isinstance(path, (str, os.PathLike)) or (text is None and "\n" in os.fspath(path)):
+            raise InputError(f"Scene: {path!r:.60}: a path or a dictionary is wanted; a text of YAML is given as "
+                             "Scene(text=...)")
+        self.path = os.fspath(path)
+        self.has_lines = not isinstance(text, dict)  #: a dictionary has none that a message could name
+        self.text = scene_text(text) if isinstance(text, dict) else text
         handle = ffi.new("LamBindScene *")
-        call(library.LamBindSceneRead, self.path.encode(), ffi.NULL if text is None else text.encode(), handle)
+        try:
+            call(library.LamBindSceneRead, self.path.encode(), ffi.NULL if text is None else self.text.encode(), handle)
+        except InputError as error:
+            raise error if self.has_lines else InputError(without_lines(str(error), self.path)) from None
         self._handle = own(handle[0], library.LamBindSceneDestroy)
         self.apothem, self.stress_unit, *self.pressures = _numbers(library.LamBindSceneNumbers, self._handle, 4)
 
@@ -177,6 +243,9 @@ class Scene:
         """Raises InputError unless a host program can take the tissue as its material: a patch is no material point, and
         the turgor of sealed cells is not prescribed."""
         call(library.LamBindSceneIsMaterial, self._handle)
+
+    def __repr__(self) -> str:
+        return f"<lamella.Scene {self.path}: {len(self)} states in its block load>"
 
     def __len__(self) -> int:
         """Number of states of the block `load`."""
@@ -224,6 +293,10 @@ class RVE:
         handle = ffi.new("LamBindRVE *")
         call(library.LamBindRVECreate, self.scene._handle, handle)
         self._handle = own(handle[0], library.LamBindRVEDestroy)
+
+    def __repr__(self) -> str:
+        return f"<lamella.RVE of {self.scene.path}: apothem {self.scene.apothem:g} m, C1 + C2 {self.scene.stress_unit:g} Pa, " \
+            f"turgor {self.scene.pressures[0]:g} Pa>"
 
     def solve(self, F: ArrayLike | None = None, turgor: ArrayLike | None = None, cohesion: ArrayLike | None = None,
               P: ArrayLike | None = None, state: bytes | None = None, derivatives: bool = True,
@@ -294,8 +367,8 @@ class Database:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        handle = ffi.new("LamBindDatabase *")
-        call(library.LamBindDatabaseOpen, os.fspath(path).encode(), handle)
+        self.path, handle = os.fspath(path), ffi.new("LamBindDatabase *")
+        call(library.LamBindDatabaseOpen, self.path.encode(), handle)
         self._handle = own(handle[0], library.LamBindDatabaseClose)
         self.apothem, self.stress_unit, *self.pressures, self.accuracy = \
             _numbers(library.LamBindDatabaseNumbers, self._handle, 5)
@@ -309,6 +382,9 @@ class Database:
         """
         study("build", scene, ranks, database=path, resume=resume, shard=shard, ranks_per_rve=ranks_per_rve)
         return Database(path)
+
+    def __repr__(self) -> str:
+        return f"<lamella.Database {self.path}: {len(self.levels)} records, accuracy {self.accuracy:g}>"
 
     @property
     def levels(self) -> np.ndarray:
@@ -327,6 +403,8 @@ class Database:
         the scene of the database. Returns Responses of the shape of the states.
         """
         loads, _ = rows_of(self.pressures, F, turgor, cohesion)
+        if accuracy is not None and not accuracy > 0:
+            raise InputError(f"accuracy: {accuracy}: is not above 0")
         array = np.zeros(loads.shape[:-1], DTYPE)
         check(library.LamBindDatabaseQuery(self._handle, array.size, _doubles(loads),
                                            self.accuracy if accuracy is None else accuracy, _bytes(array)))

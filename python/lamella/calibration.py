@@ -241,8 +241,10 @@ def calibrate(parameters: dict[str, Range] | list[Parameter], curves: Sequence[E
     from scipy.stats import qmc
     chosen = parameters if isinstance(parameters, list) else [Parameter(k, *ends) for k, ends in parameters.items()]
     n = len(chosen)
-    if not n or not curves or starts < 1:
-        raise InputError("calibrate: no parameter, no curve or no start")
+    if not n or not curves:
+        raise InputError(f"calibrate: there is no {'curve' if n else 'parameter'}")
+    if starts < 1:
+        raise InputError(f"starts: {starts}: at least 1")
     problem = Problem(chosen, curves)
     problem.check()
     sobol = qmc.Sobol(n, scramble=False).random_base2(math.ceil(math.log2(max(starts, 2))))

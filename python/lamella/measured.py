@@ -4,7 +4,6 @@ A file of data is CSV. A curve has the titles of two members of a response, "F11
 column, `scatter`, the standard deviation of the second. Single figures have the titles "figure, value, scatter", and
 lines such as "modulus (MPa), 3.6, 0.4": what `lamella rve --readings` and `--failure` tell (FIGURES).
 """
-import json
 import math
 import os
 import re
@@ -85,7 +84,7 @@ class Curve:
 
     def states(self, scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
         """x and y of the states of a scene, up to the first that has not converged. InputError: x goes back."""
-        r = RVE(Scene(self.path, json.dumps(scene))).solve(derivatives=False)
+        r = RVE(Scene(self.path, scene)).solve(derivatives=False)
         end = len(r) if r.converged.all() else int(np.argmin(r.converged))
         x, y = (c.of(r, scene)[:end] for c in self.columns)
         steps = np.diff(x)
@@ -199,7 +198,7 @@ def read_off(scene: dict[str, Any], path: str = "scene", failure: bool = False) 
     no answer there is no work of all states, and no peak unless the curve falls behind it. Bodies, processes and
     failure are solved by the program, in a process of their own. With `of_forces` a body is no box: figures are 1e6 or
     1e3 times what JSON has in N and mm."""
-    text = Scene(path, json.dumps(scene))
+    text = Scene(path, scene)
     if "load" in scene and not failure:
         rve = RVE(text)
         complete = bool(rve.solve().converged.all())
@@ -254,7 +253,7 @@ def _at_failure(objects: list[dict[str, Any]], found: dict[str, Any]) -> dict[st
 def with_mesh(scene: dict[str, Any], path: str = "scene", middle: dict[str, Any] | None = None) -> dict[str, Any]:
     """A scene with the mesh that is chosen for it, or for another one, so that all of a study have the same: results
     are then smooth in the parameters, and no scene waits for the choice."""
-    with program.path_of(Scene(path, json.dumps(middle or scene))) as file:
+    with program.path_of(Scene(path, middle or scene)) as file:
         mesh = program.run("check", file)[0]["mesh"]
     chosen = {name: mesh[name] for name in ("along", "through", "grading") if name in mesh}
     return scene | {"rve": scene["rve"] | {"mesh": (scene["rve"].get("mesh") or {}) | chosen}}

@@ -8,6 +8,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed, wait
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +62,13 @@ def work() -> None:
         sys.exit(MISTAKE)
 
 
+def count(processes: int | None) -> int:
+    """At a time; None: as many as processors. InputError: fewer than one."""
+    if processes is not None and (not isinstance(processes, Integral) or processes < 1):
+        raise InputError(f"processes: {processes}: a whole number from 1 is wanted, or None for as many as processors")
+    return int(processes or len(os.sched_getaffinity(0)))
+
+
 def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: int | None = None,
          progress: Callable[[int, int], None] = lambda done, total: None) -> list[Any]:
     """Results of jobs, in their order. function: of this package, takes a list of jobs and returns theirs; processes:
@@ -74,13 +82,13 @@ def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: i
             done += 1
             progress(done, len(jobs))
 
+    n = min(count(processes), len(jobs))
     if processes == 1 or not jobs:
         solved = []
         for job in jobs:
             solved += function([job])
             found()
         return solved
-    n = min(processes or len(os.sched_getaffinity(0)), len(jobs))
     running: list["subprocess.Popen[bytes]"] = []
     with ThreadPoolExecutor(n) as pool:
         futures = [pool.submit(_there, function, list(jobs[k::n]), running, found) for k in range(n)]
@@ -98,7 +106,7 @@ def commands(solve: Callable[[Any], Any], jobs: Sequence[Any], processes: int | 
     """Results of jobs that run commands of the program (program.run), so many at a time, or the Error of a job that has
     none. Where the whole is interrupted, the commands that run are stopped. progress(done, total): after each."""
     solved: dict[int, Any] = {}
-    with ThreadPoolExecutor(processes or len(os.sched_getaffinity(0))) as pool:
+    with ThreadPoolExecutor(count(processes)) as pool:
         futures = {pool.submit(solve, job): k for k, job in enumerate(jobs)}
         try:
             for future in as_completed(futures):

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from . import Scene
+from . import Scene, without_lines
 from ._library import Error, InputError, library_folder
 from ._served import FILES, INPUT, UNSOLVED, USAGE
 from .results import Result
@@ -68,6 +68,8 @@ def run(command: str, *arguments: Any, ranks: int = 1) -> Run:
     usage, the scene or a file is wrong; OSError: a file cannot be read or written; Error: a fault. Ctrl-C ends the
     command as it does in a terminal: what was committed stays, and --resume goes on.
     """
+    if ranks < 1:
+        raise InputError(f"ranks: {ranks}: at least 1")
     words = [_program(), command, *(str(argument) for argument in arguments)]
     if command not in WITHOUT_JSON:
         words.append("--json")
@@ -108,7 +110,11 @@ def path_of(scene: SceneLike) -> Iterator[str]:
                                      dir=folder if os.access(folder, os.W_OK) else None) as file:
         file.write(scene.text)
         file.flush()
-        yield file.name
+        try:
+            yield file.name
+        except Error as error:
+            words = str(error) if scene.has_lines else without_lines(str(error), file.name)
+            raise type(error)(words.replace(file.name, scene.path)) from None
 
 
 def study(command: str, scene: SceneLike, ranks: int, **options: Any) -> None:

@@ -296,10 +296,10 @@ def _checked(jobs: list[Job], parameters: list[Parameter], values: np.ndarray) -
     """InputError: a scene is refused; its values are told. Before any is solved."""
     for (path, scene, _), of in zip(jobs, values):
         try:
-            Scene(path, json.dumps(scene))
+            Scene(path, scene)
         except InputError as error:
             words = ", ".join(f"{p.key}: {p.text(float(f'{v:.6g}'))}" for p, v in zip(parameters, of))
-            raise InputError(f"{error}: with {words}; give bounds within which all scenes can be had") from None
+            raise InputError(f"{error} (with {words}); give bounds within which all scenes are possible") from None
     return jobs
 
 

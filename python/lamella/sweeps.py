@@ -1,6 +1,6 @@
 """Many independent solves in processes of their own, so that processors are shared and a crash is an exception."""
+import copy
 import itertools
-import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -11,7 +11,7 @@ from . import RVE, InputError, Responses, Scene, rows_of, scene_dict
 from .parallel import each
 from .program import SceneLike
 
-Job = tuple[str, str | None, dict[str, Any]]  # path and text of a scene, arguments of RVE.solve
+Job = tuple[str, str | dict[str, Any] | None, dict[str, Any]]  # path, and text or dictionary, of a scene, arguments of RVE.solve
 
 
 class Sweep:
@@ -65,11 +65,6 @@ def _at(block: Any, part: str, key: str) -> Any:
     raise InputError(f"the scene has no block {part} of the key {key}")
 
 
-def _plain(value: Any) -> Any:
-    """Numbers of NumPy as those of Python."""
-    return value.tolist()
-
-
 def _solve_here(jobs: list[Job]) -> Iterator[np.ndarray]:
     """Responses of jobs, each from undeformed tissue. Jobs of one scene use one RVE."""
     of, rve = None, None
@@ -99,10 +94,10 @@ def sweep(scene: SceneLike, values: dict[str, Sequence[Any]],
     base = scene_dict(scene)
     jobs: list[Job] = []
     for point in itertools.product(*values.values()):
-        varied = json.loads(json.dumps(base))
+        varied = copy.deepcopy(base)
         for key, value in zip(values, point):
             set_key(varied, key, value)
-        jobs.append(("sweep", json.dumps(varied, default=_plain), {}))
+        jobs.append(("sweep", varied, {}))
     if not jobs:
         raise InputError("sweep: a key has no values")
     array = _solve(jobs, processes)

@@ -112,7 +112,7 @@ def _bare(values: Any) -> list[float | None]:
 def _run(command: str, scene: Object, path: str, failure: bool) -> _Told:
     from . import Scene
     options = ["--readings", "--quiet"] + ["--no-estimate"] * (command == "rve") + ["--failure"] * failure
-    with program.path_of(Scene(path, json.dumps(scene))) as file:
+    with program.path_of(Scene(path, scene)) as file:
         return _Told(command, program.run(command, file, *options), failure)
 
 
@@ -184,6 +184,8 @@ def bands(scene: str | os.PathLike[str], samples: int, command: str | None = Non
     path = os.fspath(scene)
     parameters, text = uncertain(path), scene_dict(path)
     solver = command or ("process" if "process" in text else "rve")
+    if samples < 1:
+        raise InputError(f"samples: {samples}: at least 1")
     block = "load" if solver == "rve" else "process"
     if block not in text:
         raise InputError(f"{path}: has no block `{block}`")

@@ -1,5 +1,6 @@
 /* Handles carry the units of their scene: loads and responses are converted here. */
 #include "plan.h"
+#include "quantity_text.h"
 #include "query_source.h"
 #include "rve_run.h"
 #include "start.h"
@@ -40,13 +41,19 @@ char LamBindErrorKind(int code)
   }
 }
 
+/* A quantity of the first dimension that it has. */
 static PetscErrorCode ReadQuantity(const char *text, double *value)
 {
+  char reason[LAM_REASON_LENGTH];
+
   PetscFunctionBeginUser;
-  for (int d = 0; d < LAM_DIMENSION_COUNT; d++)
-    if (!LamQuantityParse(text, (LamDimension)d, value)) PetscFunctionReturn(0);
+  for (int d = 0; d < LAM_DIMENSION_COUNT; d++) {
+    PetscCall(LamQuantityRead(text, (LamDimension)d, value, reason));
+    if (!reason[0]) PetscFunctionReturn(0);
+  }
   SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-          "\"%s\": not a number with a unit that scenes have, such as 0.02 MPa, 75 um, 4 degC, 0.1 /day", text);
+          "\"%.60s\": %s; write a number with its unit, such as 0.02 MPa, 75 um, 4 degC, 0.1 /day", text,
+          strstr(reason, "is not a unit of") ? "scenes have no quantity of this unit" : reason);
 }
 
 int LamBindQuantity(const char *text, int dimension, double *value)

@@ -105,7 +105,38 @@ raises(lamella.InputError, "no block turgr", lambda: lamella.sweep("contact.yaml
 raises(lamella.InputError, "did you mean pressure?", lambda: lamella.sweep("contact.yaml", {"rve.turgor.presure": ["1 Pa"]}))
 raises(lamella.InputError, "cannot be opened", lambda: lamella.run("rve", "none.yaml"))
 raises(lamella.InputError, "--colour", lambda: lamella.run("check", "contact.yaml", "--colour"))
-raises(lamella.InputError, "contact.yaml: cannot be read", lambda: lamella.Result("contact.yaml"))
+raises(lamella.InputError, "contact.yaml: is not an HDF5 file; give", lambda: lamella.Result("contact.yaml"))
+nan = np.nan
+raises(OSError, "none.h5: cannot be read: No such file or directory", lambda: lamella.Result("none.h5"))
+raises(lamella.InputError, "none.yaml: the scene cannot be opened", lambda: lamella.scene_dict("none.yaml"))
+for call, words in ((lambda: rve.solve(np.eye(3), turgor=nan), "turgor: nan: is not a finite number"),
+                    (lambda: rve.solve(np.eye(3), cohesion=[0, np.inf]), "cohesion: inf: is not a finite number"),
+                    (lambda: rve.solve(np.eye(3), turgor="0.02 MPa"), "turgor: '0.02 MPa': an array of numbers is wanted"),
+                    (lambda: rve.solve(np.ones((3, 3, 3)), turgor=[1, 2]), "F (3,), P (), turgor (2,), cohesion ()"),
+                    (lambda: lamella.Database("table.h5").query(np.eye(3), accuracy=-1), "accuracy: -1: is not above 0"),
+                    (lambda: lamella.Database("table.h5").query(np.eye(3), accuracy=nan), "accuracy: nan: is not above 0"),
+                    (lambda: lamella.solve("contact.yaml", [np.eye(3)] * 2, processes=0), "processes: 0: a whole number from 1"),
+                    (lambda: lamella.sweep("contact.yaml", {"rve.wall.C1": ["1 MPa"]}, processes=-1), "processes: -1: a whole"),
+                    (lambda: lamella.run("check", "contact.yaml", ranks=0), "ranks: 0: at least 1"),
+                    (lambda: lamella.Responses.help("lumen"), "a response has no lumen; did you mean lumen_contact or lumen_fraction?"),
+                    (lambda: lamella.Scene({"version": {1}}), "the scene: {1}: is of type set"),
+                    (lambda: lamella.Scene(None), "Scene: None: a path or a dictionary is wanted"),
+                    (lambda: lamella.quantity("5"), '"5": has no unit; write'),
+                    (lambda: lamella.quantity("5,3 MPa"), "has a decimal comma"),
+                    (lambda: lamella.quantity("5 foo"), 'the unit "foo" is unknown')):
+    raises(lamella.InputError, words, call)
+
+# NumPy's numbers and arrays in a scene are those of Python; what things are
+bare = lamella.scene_dict("contact.yaml") | {"load": [{"F": [[1.1, 0], [0, 1]], "turgor": "1 kPa"}], "cells": [2, 1]}
+bare["rve"] = bare["rve"] | {"cells": [2, 1]}
+del bare["cells"]
+array = bare | {"load": [{"F": np.array([[1.1, 0], [0, 1]]), "turgor": np.str_("1 kPa")}], "version": np.int64(1)}
+array["rve"] = bare["rve"] | {"cells": np.array([2, 1])}
+assert lamella.scene_dict(array) == bare and (lamella.Scene(array).F == lamella.Scene(bare).F).all()
+assert repr(lamella.Scene(array)) == "<lamella.Scene scene: 1 states in its block load>"
+assert repr(rve).startswith("<lamella.RVE of ") and "apothem" in repr(rve)
+assert repr(rve.solve(np.stack([np.eye(3), np.diag([-1, 1, 1])]))) == \
+    "<lamella.Responses: 2 states of the shape (2,): 1 converged, 1 invalid_F>"
 raises(AttributeError, "a response has no stress", lambda: one.stress)
 assert "Piola" in lamella.Responses.help("P") and "Pa" in lamella.Responses.help("P")
 PYTHON

@@ -78,7 +78,7 @@ thick = [{"key": "rve.cell.wall_thickness", "from": "5 um", "to": "900 um"}]
 for of, asked, figures, why in (({key: scene[key] for key in scene if key != "uncertain"}, 16, None, "has no block `uncertain`"),
                                 (scene, 16, ["failure.factor"], "failure.factor: scene tells no failure"),
                                 (scene, 4, None, "4 evaluations are too few for 2 keys: give at least 16"),
-                                (scene | {"uncertain": thick}, 16, None, "um; give bounds within which all scenes can be had")):
+                                (scene | {"uncertain": thick}, 16, None, "um); give bounds within which all scenes are possible")):
     raises(lamella.InputError, why, lambda: study(of, asked, figures, processes=1))
 PYTHON
 "$python" check.py || fail "the numbers"

@@ -22,7 +22,7 @@ assert lamella.quantity("0.02 MPa") == 2e4 and lamella.quantity("4 degC") == 277
 close(lamella.to([[1e6, 2e6]], "MPa"), [[1, 2]])
 close(lamella.to(300, "degC"), 26.85)
 close(lamella.to(1e-7 / 1e6, "m/s/MPa"), 1e-7)
-raises(lamella.InputError, '"0.02": not a number with a unit', lambda: lamella.quantity("0.02"))
+raises(lamella.InputError, '"0.02": has no unit', lambda: lamella.quantity("0.02"))
 raises(lamella.InputError, "furlongs", lambda: lamella.to(1, "furlongs/pound"))
 
 # a body: what the program tells of its steps, and its file

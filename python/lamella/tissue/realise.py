@@ -196,7 +196,7 @@ def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[in
     plan = Plan(asked, _base(path, asked), Path(output))
     plan.settle()
     jobs = [Job(n, k) for n in sizes for k in range(1, realisations + 1)]
-    solved = _solve_all(plan, jobs, processes or len(os.sched_getaffinity(0)), progress)
+    solved = _solve_all(plan, jobs, parallel.count(processes), progress)
     if all(isinstance(told, str) for told in solved.values()):
         raise InputError(f"none of {len(jobs)} realisations could be solved; the first one: {solved[jobs[0]]}")
     told = realised.summary(path, plan, solved, len(Scene(path)))
