@@ -88,6 +88,8 @@ PetscErrorCode LamRuntimeStart(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
 /* The name closest to a misspelt one, NULL if none is close; names end with NULL. */
 const char *LamSuggest(const char word[], const char *const names[]);
+/* True if the only comma of a list of numbers may be a decimal one, as in "0,3": between digits, and no point anywhere. */
+PetscBool LamListMayBeDecimal(const char text[]);
 
 /* ---- options.c: GNU-style options from a table ---- */
 typedef enum {

@@ -267,6 +267,14 @@ static PetscErrorCode ReadTurgors(Command *command, PetscBool *right, int *exit_
   last = last ? last + 1 : text;
   last += strspn(last, " \t");
   (void)LamNumberScan(last, &unit);
+  if (LamListMayBeDecimal(text))
+    *right =
+        LamUsageError("tear", exit_status,
+                      "--turgor \"%s\": one turgor with a decimal comma, or two? write the decimal sign as a point, "
+                      "and a blank behind a comma between two",
+                      text);
+  else if (unit == last) /* its own message */
+    PetscCall(ReadQuantity("--turgor", last, LAM_DIMENSION_STRESS, PETSC_FALSE, command->turgor, right, exit_status));
   for (; text && *right; text = strchr(text, ',') ? strchr(text, ',') + 1 : NULL) {
     char item[2 * LAM_NAME_LENGTH];
 

@@ -3,6 +3,7 @@
 */
 #include "app.h"
 #include "word_distance.h"
+#include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
 #include <stdarg.h>
@@ -145,6 +146,13 @@ static PetscErrorCode Translate(const LamOption options[], Getopt *g)
   PetscFunctionReturn(0);
 }
 
+PetscBool LamListMayBeDecimal(const char text[])
+{
+  const char *comma = strchr(text, ',');
+
+  return (PetscBool)(comma && isdigit((unsigned char)comma[1]) && !strchr(comma + 1, ',') && !strchr(text, '.'));
+}
+
 /* Reports an option that is unknown or lacks its value. */
 static PetscBool ReportWrongOption(const LamArgs *args, int code, const Getopt *g, int *exit_status)
 {
@@ -158,6 +166,9 @@ static PetscBool ReportWrongOption(const LamArgs *args, int code, const Getopt *
     return LamUsageError(command, exit_status, "option '%s' %s", text, lacks ? "needs a value" : "takes no value");
   for (; g->names[n].name; n++) names[n] = g->names[n].name;
   names[n] = NULL;
+  if (!strncmp(text, "--uncertainty", 13) || !strncmp(text, "--realisations", 14))
+    return LamUsageError(command, exit_status, "option '%s' is of lamella rve%s; lamella %s does not take it", text,
+                         text[2] == 'u' ? " and lamella process" : "", command);
   near = LamSuggest(text + strspn(text, "-"), names);
   return LamUsageError(command, exit_status, "option '%s' is unknown or ambiguous%s%s%s", text,
                        near ? "; did you mean '--" : "", near ? near : "", near ? "'?" : "");

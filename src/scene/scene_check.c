@@ -46,6 +46,10 @@ static PetscErrorCode FailUnknown(const LamNode *node, const LamKey *map)
     if (!LamKeyIsChild(key, map)) continue;
     used += (size_t)snprintf(known + used, sizeof(known) - used, "%s%s", used ? ", " : "", LamKeyName(key));
   }
+  if (!strcmp(node->name, "lamella_tissue"))
+    PetscCall(
+        LamSceneRaise(node, LAM_MISTAKE_NAME, NULL,
+                      "this is a tissue file, not a scene; write a scene with rve: {tissue: FILE} that names it"));
   PetscCall(LamSceneRaise(node, LAM_MISTAKE_NAME, NULL, "%s; %sknown here: %s",
                           node->is_null && strchr("0123456789.-", node->name[0])
                               ? "is a value without a key; write its key and a colon before it"
