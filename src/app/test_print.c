@@ -122,10 +122,8 @@ PetscBool LamTestReadOptions(const char command[], LamTestOptions *options, int 
   options->readings = PETSC_TRUE;
   if (!LamListMayBeDecimal(options->at) && ReadStrains(options->at, &options->count, options->strain))
     return PETSC_TRUE;
-  (void)LamUsageError(
-      command, exit_status,
-      "--at %s: give at most %d strains with commas between them and the point as the decimal sign, such "
-      "as --at 0.01,0.05",
-      options->at, LAM_MOST_STRAINS);
+  (void)LamUsageError(command, exit_status,
+                      "--at %s: give at most %d strains, such as --at 0.01,0.05; the decimal sign is the point",
+                      options->at, LAM_MOST_STRAINS);
   return PETSC_FALSE;
 }

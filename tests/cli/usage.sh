@@ -33,6 +33,17 @@ for command in check rve build query verify fe2 process tradeoff map tear plot i
   expect 1 "--no-such-option" served $command --no-such-option
 done
 
+# numbers that may have a decimal comma, options of other commands, a tissue file in place of a scene
+tissue <<<'load: [{F: [[1.01, 0], [0, 1]]}]' >scene.yaml
+expect 1 "--at 0,01: give at most 16 strains, such as --at 0.01,0.05; the decimal sign" "$lamella" rve scene.yaml --at 0,01
+expect 1 "--at abc: give at most 16 strains" "$lamella" rve scene.yaml --at abc
+expect 1 '--turgor "abc MPa": is not a number with a unit; write a stress such as 0.1 MPa' "$lamella" tear scene.yaml --turgor "0,abc MPa"
+expect 1 '--turgor "0,3 MPa": one turgor with a decimal comma, or two?' "$lamella" tear scene.yaml --turgor "0,3 MPa"
+expect 1 "option '--uncertainty' is of lamella rve and lamella process; lamella fe2 does not" "$lamella" fe2 scene.yaml --uncertainty 3
+expect 1 "option '--realisations' is of lamella rve; lamella map does not" "$lamella" map scene.yaml --realisations 3
+echo '{"lamella_tissue": 1}' >tissue.json
+expect 2 "tissue.json:1:3: lamella_tissue: this is a tissue file, not a scene; write a scene with rve: {tissue: FILE}" "$lamella" rve tissue.json
+
 version=$(sed -n 's/^project(lamella VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 expect 0 "lamella $version" "$lamella" --version
 for library in PETSc HDF5 SUNDIALS MPI; do
