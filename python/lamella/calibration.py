@@ -17,7 +17,7 @@ line in place of the model.
 import json
 import math
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -101,13 +101,13 @@ class Problem:
         return whole(found.x), 2 * found.cost
 
 
-def _starts(jobs: list[tuple[Problem, np.ndarray]]) -> list[tuple[np.ndarray, float]]:
-    return [problem.least(u) for problem, u in jobs]
+def _starts(jobs: list[tuple[Problem, np.ndarray]]) -> Iterator[tuple[np.ndarray, float]]:
+    for problem, u in jobs:
+        yield problem.least(u)
 
 
-def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> list[list[tuple[float, float]]]:
+def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> Iterator[list[tuple[float, float]]]:
     """Of each job, a parameter: scaled values and the least sums of squares, from the best fit to both sides."""
-    told = []
     for problem, best, k in jobs:
         grid = np.linspace(0, 1, PROFILE)
         points = [(float(best[k]), float(np.sum(problem.residuals(best) ** 2)))]
@@ -116,8 +116,7 @@ def _profiles(jobs: list[tuple[Problem, np.ndarray, int]]) -> list[list[tuple[fl
             for x in side:
                 u, cost = problem.least(np.where(np.arange(len(u)) == k, x, u), k)
                 points.append((float(x), cost))
-        told.append(sorted(points))
-    return told
+        yield sorted(points)
 
 
 class Fit:

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from numbers import Integral
 from pathlib import Path
@@ -20,7 +20,7 @@ from .program import environment
 MISTAKE = 2  # exit status of a worker whose input is wrong
 
 
-def _there(function: Callable[[list[Any]], Any], jobs: list[Any], running: list["subprocess.Popen[bytes]"],
+def _there(function: Callable[[list[Any]], Iterable[Any]], jobs: list[Any], running: list["subprocess.Popen[bytes]"],
            found: Callable[[], None]) -> list[Any]:
     """Results of jobs in another process, which is added to those that run; found() is called after each."""
     package = str(Path(__file__).resolve().parents[1])
@@ -54,8 +54,8 @@ def work() -> None:
     out, sys.stdout = sys.stdout.buffer, sys.stderr
     try:
         function, jobs = pickle.load(sys.stdin.buffer)
-        for job in jobs:
-            out.write(pickle.dumps(function([job])[0]))
+        for result in function(jobs):
+            out.write(pickle.dumps(result))
             out.flush()
     except InputError as error:
         print(error, file=sys.stderr)
@@ -69,9 +69,9 @@ def count(processes: int | None) -> int:
     return int(processes or len(os.sched_getaffinity(0)))
 
 
-def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: int | None = None,
+def each(function: Callable[[list[Any]], Iterable[Any]], jobs: Sequence[Any], processes: int | None = None,
          progress: Callable[[int, int], None] = lambda done, total: None) -> list[Any]:
-    """Results of jobs, in their order. function: of this package, takes a list of jobs and returns theirs; processes:
+    """Results of jobs, in their order. function: of this package, takes a list of jobs and yields theirs; processes:
     at a time, default the number of processors; 1: in this process. progress(done, total): after each. Where the whole is
     interrupted, so are they."""
     done, lock = 0, threading.Lock()
@@ -85,8 +85,8 @@ def each(function: Callable[[list[Any]], Any], jobs: Sequence[Any], processes: i
     n = min(count(processes), len(jobs))
     if processes == 1 or not jobs:
         solved = []
-        for job in jobs:
-            solved += function([job])
+        for result in function(list(jobs)):
+            solved.append(result)
             found()
         return solved
     running: list["subprocess.Popen[bytes]"] = []

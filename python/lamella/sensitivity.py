@@ -18,7 +18,7 @@ import math
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,8 +72,9 @@ def _derivative(offsets: Sequence[int], own: float, values: Sequence[float]) -> 
     return float(weights @ [own, *values]) / (STEP * own)
 
 
-def _evaluate(jobs: list[Job]) -> list[Found]:
-    return [read_off(scene, path, failure) for path, scene, failure in jobs]
+def _evaluate(jobs: list[Job]) -> Iterator[Found]:
+    for path, scene, failure in jobs:
+        yield read_off(scene, path, failure)
 
 
 class Figure:

@@ -6,7 +6,7 @@ carries: the 95 % of SAMPLES samples.
 """
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -151,13 +151,11 @@ def followed(of: list[Scene]) -> list[dict[str, float]]:
     return parallel.each(_follow, of)
 
 
-def _follow(jobs: list[Scene]) -> list[dict[str, float]]:
-    told = []
+def _follow(jobs: list[Scene]) -> Iterator[dict[str, float]]:
     for of in jobs:
         with program.path_of(of) as path:
             last = program.run("process", path, "--quiet")[-1]
-        told.append({"turgor": last["turgor"], **last["factors"]})
-    return told
+        yield {"turgor": last["turgor"], **last["factors"]}
 
 
 def samples(of: Scene) -> list[Scene]:
@@ -167,8 +165,9 @@ def samples(of: Scene) -> list[Scene]:
     return [bare] + [varied(bare, parameters, values.tolist()) for values in sample(parameters, SAMPLES)]
 
 
-def _read(jobs: list[tuple[Scene, bool]]) -> list[dict[str, Any]]:
-    return [read_off(each, failure=failure) for each, failure in jobs]
+def _read(jobs: list[tuple[Scene, bool]]) -> Iterator[dict[str, Any]]:
+    for each, failure in jobs:
+        yield read_off(each, failure=failure)
 
 
 def figures(scenes: Sequence[Scene], failure: bool = False) -> list[dict[str, Any]]:

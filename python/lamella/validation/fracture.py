@@ -2,6 +2,7 @@
 import copy
 import math
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -94,24 +95,21 @@ def _tissue(folder: str, seed: int, direction: int, thickness: str) -> Path:
     return path
 
 
-def _torn(jobs: list[tuple[int, int]]) -> list[tuple[float, float]]:
+def _torn(jobs: list[tuple[int, int]]) -> Iterator[tuple[float, float]]:
     """Energy and stiffness of layers torn along X1."""
-    told = []
     with tempfile.TemporaryDirectory() as folder:
         for seed, direction in jobs:
             of = scene("apple-layer")
             of["rve"]["tissue"] = str(_tissue(folder, seed, direction, "12 um"))
             with program.path_of(of) as path:
                 curve = program.run("tear", path, "--modes", "opening", "--quiet").objects[-1]["curve"]
-            told.append((curve["energy"], curve["stiffness"]))
-    return told
+            yield curve["energy"], curve["stiffness"]
 
 
-def _crushed(jobs: list[tuple[int, int]]) -> list[dict[str, Any]]:
+def _crushed(jobs: list[tuple[int, int]]) -> Iterator[dict[str, Any]]:
     """How tissue that is compressed along X1 loses its stability: strain, and how far the normal of the band that forms
     is from the load, degrees; None: it does not."""
     from .. import RVE
-    told: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         for seed, direction in jobs:
             of = scene("apple-crushed")
@@ -119,9 +117,8 @@ def _crushed(jobs: list[tuple[int, int]]) -> list[dict[str, Any]]:
             r = RVE(of).solve()
             lost = [k for k in range(len(r)) if r.converged[k] and not r.ellipticity[k] > 0]
             n = r.localisation_normal[lost[0]] if lost else None
-            told.append({"strain": 1 - r.F[lost[0], 0, 0] / r.F[0, 0, 0] if lost else None,
-                         "angle": None if n is None else math.degrees(math.atan2(abs(n[1]), abs(n[0])))})
-    return told
+            yield {"strain": 1 - r.F[lost[0], 0, 0] / r.F[0, 0, 0] if lost else None,
+                   "angle": None if n is None else math.degrees(math.atan2(abs(n[1]), abs(n[0])))}
 
 
 TORN, CRUSHED = (1, 2, 3), (1, 2, 3, 4, 5, 6)  #: tissues, by their seeds; docs/results/tearing.md has ten torn ones
