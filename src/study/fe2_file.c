@@ -31,6 +31,7 @@ typedef enum {
                      (XDMF_TRIANGLE_6, XDMF_QUADRILATERAL_9) and its nodes */
 } Topology;
 static const char *const TopologyNames[] = {"Quadrilateral_9", "Triangle_6", "Mixed"};
+#define LOAD_FACTOR "load_factor"
 enum { XDMF_QUADRILATERAL_9 = 0x23, XDMF_TRIANGLE_6 = 0x24 };
 
 struct LamFE2File_s {
@@ -210,6 +211,19 @@ static PetscErrorCode WithThird(const LamMacroFields *fields, PetscReal **u)
   PetscFunctionReturn(0);
 }
 
+/* XDMF's times rise with the steps, and so cannot be load factors, which fall where a body is unloaded. Readers of
+   series know fields of nodes and elements alone: it is one of the elements. */
+static PetscErrorCode WriteLoadFactor(LamFE2File file, const LamMacroStep *step, const LamMacroFields *fields)
+{
+  const PetscInt n = fields->element_count;
+  char path[128];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/macro/step/%" PetscInt_FMT "/" LOAD_FACTOR, step->step));
+  PetscCall(LamWriteRows(file->writer, path, 1, &n, &step->load_factor, 0, 1, "1"));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteFields(LamFE2File file, PetscInt step, const LamMacroFields *fields,
                                   const LamStrength *strength)
 {
@@ -268,13 +282,15 @@ static PetscErrorCode WriteSummary(LamFE2File file, const LamSummary *summary)
 
 /* ---- XDMF ---- */
 
+/* time: of a process; NaN: of a run, whose times are the numbers of the steps. */
 static void WriteGrid(LamXDMF *xdmf, const LamFE2File file, const LamMacroFields *fields, PetscInt step, PetscReal time)
 {
+  const PetscBool timed = (PetscBool)isfinite(time);
   const PetscInt nodes = fields->node_count, elements = fields->element_count;
   const LamXDMFData mixed = {"/macro/topology", file->topology_length, 1},
                     alike = {"/macro/elements", elements, file->topology == TRIANGLES ? 6 : 9};
 
-  LamXDMFBegin(xdmf, "step", step, time, TopologyNames[file->topology], elements,
+  LamXDMFBegin(xdmf, "step", step, timed ? time : (PetscReal)step, TopologyNames[file->topology], elements,
                file->topology == MIXED ? mixed : alike, (LamXDMFData){"/macro/nodes", nodes, 2});
   for (PetscInt f = 0; f < file->field_count; f++) {
     const Field *field = &file->fields[f];
@@ -285,19 +301,24 @@ static void WriteGrid(LamXDMF *xdmf, const LamFE2File file, const LamMacroFields
     LamXDMFField(xdmf, field->name, on_nodes, "Float",
                  (LamXDMFData){dataset, on_nodes ? nodes : elements, field->columns});
   }
+  if (!timed) {
+    char dataset[128];
+
+    snprintf(dataset, sizeof(dataset), "/macro/step/%" PetscInt_FMT "/" LOAD_FACTOR, step);
+    LamXDMFField(xdmf, LOAD_FACTOR, PETSC_FALSE, "Float", (LamXDMFData){dataset, elements, 1});
+  }
   LamXDMFEnd(xdmf);
 }
 
 /* Rewrites the .xdmf file. */
 static PetscErrorCode WriteXDMF(LamFE2File file, const LamMacroFields *fields, const LamCurve *curve)
 {
-  const LamCurveColumn time = LamCurveHas(curve, LAM_CURVE_TIME) ? LAM_CURVE_TIME : LAM_CURVE_LOAD_FACTOR;
   LamXDMF xdmf;
 
   PetscFunctionBeginUser;
   PetscCall(LamXDMFOpen(file->path, "load steps", &xdmf));
   for (PetscInt k = 0; k < file->step_count; k++)
-    WriteGrid(&xdmf, file, fields, file->steps[k], curve->rows[k].value[time]);
+    WriteGrid(&xdmf, file, fields, file->steps[k], curve->rows[k].value[LAM_CURVE_TIME]);
   PetscCall(LamXDMFClose(&xdmf));
   PetscFunctionReturn(0);
 }
@@ -317,6 +338,7 @@ PetscErrorCode LamFE2FileAddStep(LamFE2File file, const LamMacroStep *step, cons
   PetscCall(LamRecordWriterBegin(file->writer));
   if (!file->step_count) PetscCall(WriteMesh(file, step, fields));
   PetscCall(WriteFields(file, step->step, fields, &summary->strength));
+  if (isnan(step->time)) PetscCall(WriteLoadFactor(file, step, fields));
   PetscCall(WriteObstacles(file, step));
   PetscCall(LamListGrow(file->step_count, sizeof(PetscInt), &file->capacity, &file->steps));
   file->steps[file->step_count++] = step->step;
