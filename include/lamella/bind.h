@@ -43,6 +43,8 @@ typedef struct LamBindScene_s *LamBindScene;
 LAM_EXPORT int LamBindSceneRead(const char *path, const char *text, LamBindScene *scene);
 /* Apothem, m; C1 + C2, turgor and cohesion of block `rve`, Pa. */
 LAM_EXPORT void LamBindSceneNumbers(LamBindScene scene, double numbers[4]);
+/* The k-th file that it names, from 0, as it is opened; NULL behind the last. */
+LAM_EXPORT const char *LamBindSceneFile(LamBindScene scene, int k);
 /* Number of the states of block `load`, and their loads and P, if `loads` is not NULL. Both F and P are NaN on a ramp
    from an F that is found. */
 LAM_EXPORT int LamBindSceneLoads(LamBindScene scene, double loads[], double P[]);
@@ -63,8 +65,9 @@ LAM_EXPORT int LamBindRVESolve(LamBindRVE rve, int n, const double loads[], cons
 /* Solves the loads of the scene from undeformed tissue, as `lamella rve`. responses: room for LamBindSceneLoads of
    them; *count: those solved. */
 LAM_EXPORT int LamBindRVESolveOwnLoads(LamBindRVE rve, int derivatives, int estimate, void *responses, int *count);
-/* What is read off the curve of the loads that LamBindRVESolveOwnLoads has solved last, as `lamella rve --readings --json`
-   has it; NULL: there is no curve. Slopes are those of the curve only with derivatives. Valid until the next solve. */
+/* What is read off the curve of the loads that LamBindRVESolveOwnLoads has solved last, as `lamella rve --readings
+   --json` has it; NULL: there is no curve. Slopes are those of the curve only with derivatives. Valid until the next
+   solve. */
 LAM_EXPORT const char *LamBindRVEReadings(LamBindRVE rve);
 /* The state that the next solve begins with, as bytes. */
 LAM_EXPORT int LamBindRVEStateSize(LamBindRVE rve, size_t *bytes);

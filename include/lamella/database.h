@@ -30,14 +30,14 @@ typedef struct LamRecordWriter_s *LamRecordWriter;
 
 /* ---- writing ---- */
 
-typedef enum { LAM_WRITE_CREATE, LAM_WRITE_APPEND } LamWriteMode;
+typedef enum { LAM_WRITE_CREATE, LAM_WRITE_APPEND, LAM_WRITE_OVERWRITE } LamWriteMode;
 
 /*
   Opens a file for writing and takes the lock PATH.lock. Symbolic links are followed. `kind`: "rve", "database",
   "fe2", "map". CREATE: a new file, which replaces a file of the same kind, or an empty one, atomically at the first
-  commit; PETSC_ERR_USER_INPUT if it would replace anything else. APPEND: continues a file of the same microstructure,
-  PETSC_ERR_USER_INPUT if it differs; a missing file is created. PETSC_ERR_FILE_OPEN, with the holder, if another
-  process has the lock.
+  commit; PETSC_ERR_USER_INPUT if it would replace anything else. OVERWRITE: it replaces any plain file. APPEND:
+  continues a file of the same microstructure, PETSC_ERR_USER_INPUT if it differs; a missing file is created.
+  PETSC_ERR_FILE_OPEN, with the holder, if another process has the lock.
 */
 LAM_EXPORT PetscErrorCode LamRecordWriterOpen(const char path[], const char kind[], LamWriteMode mode,
                                               const LamScene *scene, LamRecordWriter *writer);
@@ -148,9 +148,9 @@ LAM_EXPORT PetscErrorCode LamDatabaseMerge(const char out[], PetscInt n, const c
   ---- the table: the potential interpolated on a grid of states ----
 
   The grid points (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, for
-  contact tissue suction s = turgor + cohesion, and F33 if the sample box has a range of it; docs/theory/database.md, The tabulated potential. LamKeyIsNode
-  tells from its key whether a record is a node. The grid is coarse initially and refined where it is queried; the
-  nodes present determine range and accuracy of the table.
+  contact tissue suction s = turgor + cohesion, and F33 if the sample box has a range of it; docs/theory/database.md,
+  The tabulated potential. LamKeyIsNode tells from its key whether a record is a node. The grid is coarse initially and
+  refined where it is queried; the nodes present determine range and accuracy of the table.
 */
 typedef struct LamGrid_s *LamGrid;
 typedef struct LamTable_s *LamTable;
@@ -172,7 +172,8 @@ LAM_EXPORT PetscErrorCode LamGridGetRecords(LamGrid grid, PetscInt *n, const Pet
    again for such a grid. */
 LAM_EXPORT PetscErrorCode LamGridGetFreeKeys(LamGrid grid, PetscInt *n, const PetscInt64 *keys[]);
 LAM_EXPORT PetscErrorCode LamGridSolveRecords(LamGrid grid, const LamMicrostructure *micro, LamResponder solver);
-#define LAM_GRID_NAME "/table/grid" /* written by LamRecordWriterText, before the first node */
+#define LAM_SCENE_FILES "/scene_files" /* as LamSceneDescribeFiles gives them, where the scene names files */
+#define LAM_GRID_NAME "/table/grid"    /* written by LamRecordWriterText, before the first node */
 
 /* Node keys lie between sample keys and cache keys. */
 #define LAM_NODE_KEY ((PetscInt64)1 << 60)

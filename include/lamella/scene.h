@@ -126,11 +126,10 @@ typedef struct {
   PetscReal plane, axial; /* of the in-plane components; of P33 */
 } LamStressScale;
 /*
-  The stress of the tissue at a strain of 1 %, in C1 + C2 of its reference wall, from its stiffness at rest: in the plane
-  the Frobenius norm of the tangent of thin bonded walls,
-    |A| = t (4 + 2 C4/(C1 + C2)) / (1 - t)^1.2,    A_3333 = 8 t,
-  C4 of quadratic fibres; the mean over the cells. Within 35 % of the solved tangent for t up to 0.4 and C4 up to 100
-  (C1 + C2), and for thin walls of any fibres (docs/results/performance.md, The norm of errors).
+  The stress of the tissue at a strain of 1 %, in C1 + C2 of its reference wall, from its stiffness at rest: in the
+  plane the Frobenius norm of the tangent of thin bonded walls, |A| = t (4 + 2 C4/(C1 + C2)) / (1 - t)^1.2,    A_3333 =
+  8 t, C4 of quadratic fibres; the mean over the cells. Within 35 % of the solved tangent for t up to 0.4 and C4 up to
+  100 (C1 + C2), and for thin walls of any fibres (docs/results/performance.md, The norm of errors).
 */
 LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
 
@@ -140,15 +139,17 @@ LAM_EXPORT LamStressScale LamStressScaleOf(const LamMicrostructure *micro);
    junctions; PETSC_FALSE: of cells that differ none is there. */
 LAM_EXPORT PetscBool LamLamellaFaceFactors(const LamMicrostructure *micro, PetscInt cell, PetscInt face,
                                            PetscReal *strength, PetscReal *energy);
-/* The stiffness, in (C1 + C2)/a, above which the traction of the lamella can fall without a jump: strength^2/(2 energy),
-   the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
+/* The stiffness, in (C1 + C2)/a, above which the traction of the lamella can fall without a jump: strength^2/(2
+   energy), the largest of all faces of the tissue and of tension and shear. Infinite where an energy is 0. */
 LAM_EXPORT PetscReal LamLamellaLeastStiffness(const LamMicrostructure *micro);
-#define LAM_LAMELLA_STIFFEST 1e7 /* (C1 + C2)/a: rounding of a coordinate is then a traction of about 1e-9 (C1 + C2) */
-/* The stiffness where none is given: the lamella costs 0.08 % of the tissue's stiffness, or less where 50 times the least
-   stiffness is more; at most the stiffest. */
+#define LAM_LAMELLA_STIFFEST                                                                                           \
+  1e7 /* (C1 + C2)/a: rounding of a coordinate is then a traction of about 1e-9 (C1 + C2)                              \
+       */
+/* The stiffness where none is given: the lamella costs 0.08 % of the tissue's stiffness, or less where 50 times the
+   least stiffness is more; at most the stiffest. */
 LAM_EXPORT PetscReal LamLamellaDefaultStiffness(const LamMicrostructure *micro);
-/* The same of the cuts across walls that tear: least stiffness strength^2/(2 energy), and the one where none is given, at
-   the same price of the stiffness of walls in bending. */
+/* The same of the cuts across walls that tear: least stiffness strength^2/(2 energy), and the one where none is given,
+   at the same price of the stiffness of walls in bending. */
 LAM_EXPORT PetscReal LamTearingLeastStiffness(const LamTearing *tearing);
 LAM_EXPORT PetscReal LamTearingDefaultStiffness(const LamMicrostructure *micro);
 LAM_EXPORT PetscReal LamTearingCompliance(const LamMicrostructure *micro); /* that price */
@@ -223,9 +224,9 @@ typedef struct {
   PetscReal stretch_min, stretch_max; /* principal logarithmic strains */
   PetscReal turgor_min, turgor_max;
   PetscReal F33_min, F33_max; /* without a sample block too; both 1: plane strain */
-  PetscInt count;     /* number of samples; 0: until the accuracy is reached */
-  PetscReal accuracy; /* 0 if count is given */
-  PetscInt round;     /* minimum number of nodes that are started together */
+  PetscInt count;             /* number of samples; 0: until the accuracy is reached */
+  PetscReal accuracy;         /* 0 if count is given */
+  PetscInt round;             /* minimum number of nodes that are started together */
 } LamSample;
 
 #define LAM_MAP_OF_WALL(X, name, ...) X(LAM_MAP_##name, #name)
@@ -371,11 +372,11 @@ typedef struct {
 typedef struct {
   char name[LAM_NAME_LENGTH]; /* letters, digits, - and _ */
   LamScenePlace place;        /* of its expression, or of its name where it has none */
-  LamPlaceField where;     /* region where the field is nonzero; NULL: the mesh's physical group of this name; owned */
+  LamPlaceField where; /* region where the field is nonzero; NULL: the mesh's physical group of this name; owned */
   char tissue[PETSC_MAX_PATH_LEN]; /* file of its own cells; empty: those of the scene */
   LamMicrostructure micro;         /* with the orientation of the region; owns its cells */
-  PetscReal reference;             /* orientation at which its tissue is solved; that of micro is the result of a turn */
-  LamScales scales;        /* the region's apothem and C1 + C2, the units of micro, turgor and cohesion */
+  PetscReal reference; /* orientation at which its tissue is solved; that of micro is the result of a turn */
+  LamScales scales;    /* the region's apothem and C1 + C2, the units of micro, turgor and cohesion */
   PetscReal turgor, cohesion;
 } LamRegion;
 
@@ -442,10 +443,10 @@ typedef struct {
 
 /* Transport of water in a body: fluxes per reference area, down gradients of the water potential in the reference. */
 typedef struct {
-  PetscBool given;         /* otherwise each cell exchanges water with the surroundings directly */
-  PetscReal apoplast;      /* conductivity, (C1 + C2) / macro length^2, 1/s; infinite: as if not `given` */
-  PetscReal cell_to_cell;  /* likewise */
-  PetscInt surface_count;  /* sides that are not sealed */
+  PetscBool given;        /* otherwise each cell exchanges water with the surroundings directly */
+  PetscReal apoplast;     /* conductivity, (C1 + C2) / macro length^2, 1/s; infinite: as if not `given` */
+  PetscReal cell_to_cell; /* likewise */
+  PetscInt surface_count; /* sides that are not sealed */
   LamSurface surface[LAM_MAX_BOUNDARIES];
 } LamTransportSpec;
 
@@ -483,10 +484,19 @@ typedef struct {
   PetscReal opening;                        /* event: increase of the opening volume over V0 since the start */
 } LamProcessSpec;
 
+/* A file that a scene names. */
+typedef struct {
+  char *name;                 /* as in the scene; owned */
+  char *path;                 /* as it is opened; owned */
+  char hash[LAM_HASH_LENGTH]; /* of its content when the scene was read; empty: it could not be read */
+} LamSceneFile;
+
 /* A scene: plain data, read-only after LamSceneRead. Blocks absent from the file have count 0 or PETSC_FALSE. */
 typedef struct {
   char path[PETSC_MAX_PATH_LEN];
   char *text; /* the file's text, for provenance; owned */
+  PetscInt file_count;
+  LamSceneFile *files; /* mesh, tissues, tables: all that it names; owned */
   PetscInt warning_count;
   char **warnings; /* what is accepted and probably a mistake, in the form of LamSceneRead's messages; owned */
   LamScales scales;
@@ -545,6 +555,8 @@ LAM_EXPORT PetscReal LamMacroParameter(const LamMacroSpec *spec, PetscInt step);
     "file:line:column: key: value: what is wrong; what would be right".
 */
 LAM_EXPORT PetscErrorCode LamSceneRead(const char path[], LamScene **scene);
+/* The files that it names, a line "HASH NAME" each. The caller frees the text. */
+LAM_EXPORT PetscErrorCode LamSceneDescribeFiles(const LamScene *scene, char **text);
 /* As LamSceneRead, from text; `name` is the file name in messages. */
 LAM_EXPORT PetscErrorCode LamSceneReadText(const char name[], const char text[], LamScene **scene);
 LAM_EXPORT PetscErrorCode LamSceneDestroy(LamScene **scene);
@@ -573,8 +585,9 @@ typedef enum {
 } LamDimension;
 
 /*
-  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa, J/m2, Pa/m, m2/s/Pa). PETSC_ERR_USER_INPUT, with
-  the reason, if the unit is missing, unknown or of another dimension, or the number is not finite.
+  Converts text such as "0.02 MPa" to SI (m, Pa, rad, s, K, 1/s, J/mol, m/s/Pa, J/m2, Pa/m, m2/s/Pa).
+  PETSC_ERR_USER_INPUT, with the reason, if the unit is missing, unknown or of another dimension, or the number is not
+  finite.
 */
 LAM_EXPORT PetscErrorCode LamQuantityParse(const char text[], LamDimension dimension, PetscReal *si);
 

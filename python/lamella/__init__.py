@@ -247,6 +247,15 @@ class Scene:
     def __repr__(self) -> str:
         return f"<lamella.Scene {self.path}: {len(self)} states in its block load>"
 
+    @property
+    def files(self) -> list[str]:
+        """The files that it names: mesh, tissues, tables."""
+        names = iter(lambda: library.LamBindSceneFile(self._handle, len(found)), ffi.NULL)
+        found: list[str] = []
+        for name in names:
+            found.append(ffi.string(name).decode())
+        return found
+
     def __len__(self) -> int:
         """Number of states of the block `load`."""
         return library.LamBindSceneLoads(self._handle, ffi.NULL, ffi.NULL)

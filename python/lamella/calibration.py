@@ -18,13 +18,12 @@ import json
 import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import InputError, misfit, parallel, scene_dict
-from ._files import make_folder, write_whole
+from ._files import inputs_of, make_folder, may_write, with_member, write_whole
 from ._served import UNSOLVED, end_with_program, progress as shown, served
 from .measured import Curve, Experiment, Figures, experiment
 from .parameters import Parameter, Range, uncertain, varied
@@ -270,6 +269,10 @@ def run(request: dict[str, Any]) -> int:
     """What `lamella calibrate` does; its exit status."""
     files, folder = request["files"], request.get("output")
     scenes, data = files[::2], files[1::2]
+    file = None
+    if folder:
+        file = may_write(make_folder(folder) / "fit.json", with_member("lamella_calibration"), "a fit",
+                         request.get("overwrite", False), [*inputs_of(*scenes), *data])
     parameters, of = _shared(scenes)
     experiments = [experiment(*each) for each in zip(scenes, data, of)]
     fit = calibrate(parameters, experiments, request.get("starts", 4), request.get("processes"),
@@ -278,10 +281,10 @@ def run(request: dict[str, Any]) -> int:
         fit.profile(request.get("processes"), shown("profiles"))
     told = fit.told()
     print(json.dumps(told) if request.get("json") else fit)
-    if folder:
-        write_whole(make_folder(folder) / "fit.json", json.dumps(told) + "\n")
+    if file:
+        write_whole(file, json.dumps(told) + "\n")
         if not request.get("json"):
-            print(f"wrote {Path(folder) / 'fit.json'}", flush=True)
+            print(f"wrote {file}", flush=True)
     return UNSOLVED if fit.misfit else 0
 
 

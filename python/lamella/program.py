@@ -131,35 +131,36 @@ def study(command: str, scene: SceneLike, ranks: int, **options: Any) -> None:
 
 
 def fe2(scene: SceneLike, output: Place, database: Place | None = None, *, ranks: int = 1, response: str | None = None,
-        certify: bool | None = None, resume: bool = False) -> Result:
+        certify: bool | None = None, resume: bool = False, overwrite: bool = False) -> Result:
     """Solves the body of a scene, `lamella fe2`, and writes the file `output`.
 
     database: one that is queried, and added to; response: "direct", "cache" or "database"; certify: all reactions by
-    direct solves, or none (default: the last). Returns the Result: `steps`, `boundaries`, `displacement` and `reaction`
-    [steps, sides, 2] in m and N/m, `mesh`, `fields(step)`, `summary`, and `status`: "done", or why it ended.
+    direct solves, or none (default: the last); overwrite: files that Lamella did not write are replaced, too. Returns
+    the Result: `steps`, `boundaries`, `displacement` and `reaction` [steps, sides, 2] in m and N/m, `mesh`, `fields(step)`, `summary`, and `status`: "done", or why it ended.
     """
     study("fe2", scene, ranks, output=output, database=database, response=response, certify=certify is True,
-          no_certify=certify is False, resume=resume)
+          no_certify=certify is False, resume=resume, overwrite=overwrite)
     return Result(output)
 
 
 def process(scene: SceneLike, output: Place, database: Place | None = None, *, ranks: int = 1,
-            response: str | None = None, frames: int | None = None) -> Result:
+            response: str | None = None, frames: int | None = None, overwrite: bool = False) -> Result:
     """Follows the tissue of a scene in time, `lamella process`, and writes the file `output`.
 
     database, response: as of fe2; frames: number of states whose cells are kept besides those of events. Returns the
     Result: `time` [s], `temperature` [K], `turgor` and `firmness` [Pa], `water`, `event`, ..., `responses` of the
     states of a material point, and `status`: "done", or why it ended; of a body also what fe2 returns.
     """
-    study("process", scene, ranks, output=output, database=database, response=response, frames=frames)
+    study("process", scene, ranks, output=output, database=database, response=response, frames=frames,
+          overwrite=overwrite)
     return Result(output)
 
 
-def map(scene: SceneLike, output: Place, *, ranks: int = 1, resume: bool = False) -> Result:
+def map(scene: SceneLike, output: Place, *, ranks: int = 1, resume: bool = False, overwrite: bool = False) -> Result:
     """Finds how tissue fails over two quantities, `lamella map`, and writes the file `output`.
 
     Returns the Result: `axes`, and over them [y, x] `mode` ("none", "separation", ...), `criterion`, `load_factor` and
     `place`; `responses` of the points that have one, number x + y times the points along x of `keys`.
     """
-    study("map", scene, ranks, output=output, resume=resume)
+    study("map", scene, ranks, output=output, resume=resume, overwrite=overwrite)
     return Result(output)

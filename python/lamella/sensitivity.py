@@ -16,6 +16,7 @@ import io
 import json
 import math
 import os
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -25,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, Scene, parallel, scene_dict
-from ._files import make_folder, write_whole
+from ._files import inputs_of, make_folder, may_write, text_of, with_member, write_whole
 from ._served import end_with_program, progress as shown, served
 from .measured import FACTORS, FIGURES, OF_FAILURE, read_off, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
@@ -238,11 +239,28 @@ class Sensitivity:
                           ([] if self.mode is None else [found["mode"]]))
         return out.getvalue()
 
-    def write(self, folder: str | os.PathLike[str]) -> None:
-        """sensitivity.json and samples.csv in a folder. OSError: they cannot be written."""
-        make_folder(folder)
-        write_whole(Path(folder) / "samples.csv", self.table())
-        write_whole(Path(folder) / "sensitivity.json", json.dumps(self.told()) + "\n")
+    def write(self, folder: str | os.PathLike[str], overwrite: bool = False) -> None:
+        """sensitivity.json and samples.csv in a folder. InputError: they would replace other files; OSError: they
+        cannot be written."""
+        names = outputs(folder, overwrite)
+        for name, text in zip(names, (json.dumps(self.told()) + "\n", self.table())):
+            write_whole(name, text)
+
+
+def _is_samples(path: Path) -> bool:
+    """The table of samples: row, block, keys, figures."""
+    head = next(csv.reader(io.StringIO(text_of(path))), [])
+    names = [re.sub(r" \([^()]*\)$", "", column) for column in head[2:]]
+    return head[:2] == ["row", "block"] and bool(names) and all(
+        name in (*FIGURES, "mode") or "." in name for name in names)
+
+
+def outputs(folder: str | os.PathLike[str], overwrite: bool = False, inputs: Sequence[str] = ()) -> tuple[Path, Path]:
+    """The folder's sensitivity.json and samples.csv, which may be written; the folder is made where it is not there."""
+    folder = make_folder(folder)
+    return (may_write(folder / "sensitivity.json", with_member("lamella_sensitivity"), "the result of a sensitivity",
+                      overwrite, inputs),
+            may_write(folder / "samples.csv", _is_samples, "a table of samples", overwrite, inputs))
 
 
 def _value(found: Found, name: str) -> float:
@@ -344,13 +362,13 @@ def run(request: dict[str, Any]) -> None:
     """What `lamella sensitivity` does."""
     folder, figures = request.get("output"), request.get("figure")
     if folder:
-        make_folder(folder)
+        outputs(folder, request.get("overwrite", False), inputs_of(request["scene"]))
     told = study(request["scene"], request.get("evaluations", 1000), figures.split(",") if figures else None,
                  request.get("seed", 0), request.get("processes"), shown("evaluations"))
     print(json.dumps(told.told()) if request.get("json") else told)
     if not folder:
         return
-    told.write(folder)
+    told.write(folder, request.get("overwrite", False))
     if not request.get("json"):
         print(f"wrote {Path(folder) / 'sensitivity.json'} and samples.csv", flush=True)
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from . import Error, InputError, parallel, program, scene_dict
-from ._files import make_folder, write_whole
+from ._files import inputs_of, make_folder, may_write, with_member, write_whole
 from ._served import UNSOLVED, end_with_program, progress as shown, served
 from .measured import FACTORS, FIGURES, figures_in, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
@@ -272,11 +272,14 @@ def _ending(told: Object) -> list[str]:
 
 def run(request: Object) -> int:
     """Solves, and tells; the exit status: 3 where a sample is not solved to its end."""
+    file = None
+    if request.get("output"):
+        file = may_write(make_folder(request["output"]) / "uncertainty.json", with_member("lamella_uncertainty"),
+                         "the result of --uncertainty", request.get("overwrite", False), inputs_of(request["scene"]))
     told = bands(request["scene"], request["samples"], request["command"], bool(request.get("failure")),
                  request.get("processes"), (lambda done, total: None) if request.get("quiet") else shown("samples"))
     print(json.dumps(told) if request.get("json") else "\n".join(table(told)))
-    if request.get("output"):
-        file = make_folder(request["output"]) / "uncertainty.json"
+    if file:
         write_whole(file, json.dumps(told, allow_nan=False) + "\n")
         if not request.get("json"):
             print(f"wrote {file}")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import InputError, Result
+from ._files import may_write
 
 BIQUADRATIC_QUAD, QUADRATIC_TRIANGLE = 28, 22  # VTK's numbers of cells; their nodes are in the order of Lamella's
 
@@ -77,13 +78,35 @@ def _write_fields(result: Result, root: Any, steps: Any) -> list[np.ndarray]:
     return points
 
 
-def write(result: Result, path: str | os.PathLike[str]) -> None:
-    """Writes the states of a file of `rve` or `process`, in their present shape, or the steps of a body, in the shape
-    at rest with the displacement u, as an UnstructuredGrid in time, with the fields of nodes and elements; SI units."""
+def _is_ours(path: Path) -> bool:
+    """Whether a VTKHDF file has fields of Lamella's."""
     import h5py
+    try:
+        with h5py.File(path) as file:
+            cells = file.get("VTKHDF/CellData", {})
+            return "cell_of" in cells or "cauchy" in cells
+    except OSError:
+        return False
+
+
+def write(result: Result, path: str | os.PathLike[str], overwrite: bool = False) -> None:
+    """Writes the states of a file of `rve` or `process`, in their present shape, or the steps of a body, in the shape
+    at rest with the displacement u, as an UnstructuredGrid in time, with the fields of nodes and elements; SI units.
+    InputError: it would replace a file that is none of these, without overwrite."""
     numbers = result.states()
     if not numbers:
         raise InputError(f"{result.file.filename}: of kind {result.kind}, has no states with a mesh")
+    path = may_write(path, _is_ours, "a VTKHDF file of lamella", overwrite, [result.file.filename])
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        _write(result, numbers, aside)
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def _write(result: Result, numbers: list[int], path: Path) -> None:
+    import h5py
     with h5py.File(path, "w") as file:
         root = file.create_group("VTKHDF")
         root.attrs["Version"] = (2, 0)
@@ -102,14 +125,14 @@ def write(result: Result, path: str | os.PathLike[str]) -> None:
 
 def main() -> None:
     """The command."""
-    if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
-        sys.exit("usage: python3 -m lamella.vtkhdf FILE.h5 [OUT.vtkhdf]")
-    source = sys.argv[1]
-    target = sys.argv[2] if len(sys.argv) == 3 else str(Path(source).with_suffix(".vtkhdf"))
+    words = [word for word in sys.argv[1:] if word != "--overwrite"]
+    if len(words) not in (1, 2) or words[0].startswith("-"):
+        sys.exit("usage: python3 -m lamella.vtkhdf FILE.h5 [OUT.vtkhdf] [--overwrite]")
+    target = words[1] if len(words) == 2 else str(Path(words[0]).with_suffix(".vtkhdf"))
     try:
-        with Result(source) as result:
-            write(result, target)
-    except InputError as error:
+        with Result(words[0]) as result:
+            write(result, target, "--overwrite" in sys.argv)
+    except (InputError, OSError) as error:
         sys.exit(f"lamella.vtkhdf: {error}")
     print(f"wrote {target}")
 

@@ -124,6 +124,13 @@ struct LamUsage_s {
 */
 PetscErrorCode LamOptionsParse(LamArgs *args, const char usage[], const char summary[], const LamOption options[],
                                int positional_count, const char *positional[], PetscBool *done, int *exit_status);
+#define LAM_OVERWRITE_OPTION(overwrite)                                                                                \
+  {                                                                                                                    \
+    0, "overwrite", LAM_OPTION_FLAG, NULL, "replace files that Lamella did not write, too; never an input",            \
+        &(overwrite)                                                                                                   \
+  }
+/* Whether -o is a name for an HDF5 file (NULL: not given). */
+PetscBool LamOutputIsHDF5(const char command[], const char path[], int *exit_status);
 /* Prints, on rank 0, what is wrong with the command line: "lamella COMMAND: ..."; returns PETSC_FALSE. */
 PetscBool LamUsageError(const char command[], int *exit_status, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 

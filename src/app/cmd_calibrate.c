@@ -8,7 +8,7 @@ typedef struct {
   const char *const *files; /* scene and data in turn, behind the last NULL */
   const char *output;
   PetscInt count, starts, processes;
-  PetscBool profile, json;
+  PetscBool profile, overwrite, json;
 } Request;
 
 static PetscErrorCode Calibrate(const Request *r, int *exit_status)
@@ -17,7 +17,8 @@ static PetscErrorCode Calibrate(const Request *r, int *exit_status)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < r->count; k++) json_array_append_new(files, json_string(r->files[k]));
-  o = json_pack("{s:o, s:s*, s:b, s:b}", "files", files, "output", r->output, "profile", r->profile, "json", r->json);
+  o = json_pack("{s:o, s:s*, s:b, s:b, s:b}", "files", files, "output", r->output, "profile", r->profile, "overwrite",
+                r->overwrite, "json", r->json);
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "an argument is not in UTF-8");
   if (r->starts) json_object_set_new(o, "starts", json_integer(r->starts));
   if (r->processes) json_object_set_new(o, "processes", json_integer(r->processes));
@@ -32,6 +33,7 @@ PetscErrorCode LamCommandCalibrate(LamArgs *args, int *exit_status)
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FOLDER", "fit.json, for plot", &r.output},
+      LAM_OVERWRITE_OPTION(r.overwrite),
       {0, "starts", LAM_OPTION_FROM_1, "N", "places from which the fit starts (default: 4)", &r.starts},
       {0, "profile", LAM_OPTION_FLAG, NULL,
        "intervals without a straight line in place of the model: for what is badly known", &r.profile},
@@ -44,7 +46,7 @@ PetscErrorCode LamCommandCalibrate(LamArgs *args, int *exit_status)
   PetscCall(PetscCalloc1(args->argc + 1, &names));
   PetscCall(LamOptionsParse(args,
                             "calibrate SCENE DATA.csv [SCENE DATA.csv]... [-o FOLDER] [--starts N] [--profile]\n"
-                            "                         [--processes N] [--json]",
+                            "                         [--processes N] [--overwrite] [--json]",
                             "Finds values of the scenes' uncertain keys from measured curves and figures.", options, -2,
                             names, &done, exit_status));
   r.files = names;

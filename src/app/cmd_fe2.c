@@ -65,6 +65,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
        &run.database_path},
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "results, with OUT.xdmf (for ParaView) and OUT.csv (curves) beside it",
        &run.out_path},
+      LAM_OVERWRITE_OPTION(run.overwrite),
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE per material point (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
@@ -84,7 +85,7 @@ PetscErrorCode LamCommandFE2(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args,
                             "fe2 SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--certify | --no-certify]\n           "
-                            "[--readings] [--at STRAIN,...] [--resume] [--json] [--quiet]",
+                            "[--readings] [--at STRAIN,...] [--resume] [--overwrite] [--json] [--quiet]",
                             "Solves the macroscale problem of a scene.", options, 1, &run.scene_path, &done,
                             exit_status));
   if (done) PetscFunctionReturn(0);

@@ -96,6 +96,7 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5", "the map, for plot and info", &m.path},
+      LAM_OVERWRITE_OPTION(m.overwrite),
       {0, "resume", LAM_OPTION_FLAG, NULL, "go on with OUT.h5 where it is there", &m.resume},
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per point on stdout", &console.json},
       {0, "quiet", LAM_OPTION_FLAG, NULL, "no progress on stderr", &console.quiet},
@@ -103,11 +104,12 @@ PetscErrorCode LamCommandMap(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(args, "map SCENE -o OUT.h5 [--resume] [--json] [--quiet]",
+  PetscCall(LamOptionsParse(args, "map SCENE -o OUT.h5 [--resume] [--overwrite] [--json] [--quiet]",
                             "Finds how tissue fails over two of the scene's quantities.", options, 1, &m.scene_path,
                             &done, exit_status));
   if (done) PetscFunctionReturn(0);
   if (!m.path && !LamUsageError("map", exit_status, "the output is missing; give -o OUT.h5")) PetscFunctionReturn(0);
+  if (!LamOutputIsHDF5("map", m.path, exit_status)) PetscFunctionReturn(0);
   PetscCall(args->start(args));
   m.reporter = LamConsoleReporter(&console);
   if (console.json) m.point = PrintPoint;

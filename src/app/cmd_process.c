@@ -290,7 +290,6 @@ static PetscErrorCode SolveBody(LamBodyStudy *study, LamConsole *console, int *e
   LamFE2Run *fe2 = &study->fe2;
 
   PetscFunctionBeginUser;
-  if (!LamFE2CheckPaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamBodyStudyPrepare(study));
   if (!LamFE2CheckTissuePaths("process", fe2, exit_status)) PetscFunctionReturn(0);
   PetscCall(LamBodyStudySolve(study));
@@ -344,6 +343,7 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
        &run.database_path},
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
        "states in time, for plot and info, with OUT.csv beside it; of a body also OUT.xdmf", &run.out_path},
+      LAM_OVERWRITE_OPTION(run.overwrite),
       {0, "response", LAM_OPTION_TEXT, "TYPE",
        "direct: solve an RVE for each state (default); cache: query, solve what is missing (default with -d); "
        "database: query only",
@@ -364,17 +364,19 @@ PetscErrorCode LamCommandProcess(LamArgs *args, int *exit_status)
   PetscCall(
       LamOptionsParse(args,
                       "process SCENE [-d DB.h5] [-o OUT.h5] [--response TYPE] [--frames N] [--readings]\n        "
-                      "       [--at STRAIN,...] [--json] [--quiet]\n"
-                      "       lamella process SCENE --uncertainty N [--processes N] [-o FOLDER] [--json] [--quiet]",
+                      "       [--at STRAIN,...] [--overwrite] [--json] [--quiet]\n"
+                      "       lamella process SCENE --uncertainty N [--processes N] [-o FOLDER] [--overwrite]\n        "
+                      "       [--json] [--quiet]",
                       "Follows tissue that changes in time.", options, 1, &run.scene_path, &done, exit_status));
   if (done || !UncertaintyFits(&uncertainty, &run, response, frames, &console.test, exit_status))
     PetscFunctionReturn(0);
   if (uncertainty.count) {
-    PetscCall(LamUncertaintyRun(&uncertainty, run.scene_path, run.out_path, console.json, console.quiet, exit_status));
+    PetscCall(LamUncertaintyRun(&uncertainty, run.scene_path, run.out_path, run.overwrite, console.json, console.quiet,
+                                exit_status));
     PetscFunctionReturn(0);
   }
   if (!LamFE2ChooseResponse("process", response, &run, exit_status) ||
-      !LamTestReadOptions("process", &console.test, exit_status))
+      !LamFE2CheckPaths("process", &run, exit_status) || !LamTestReadOptions("process", &console.test, exit_status))
     PetscFunctionReturn(0);
   run.all_fields = console.test.readings; /* of a body: the summary has the curve */
   PetscCall(args->start(args));

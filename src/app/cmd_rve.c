@@ -332,11 +332,11 @@ static PetscErrorCode RunStudy(const Command *command, const LamRealisations *re
   uncertainty->processes = realisations->processes;
   uncertainty->failure = command->run.find_failure;
   if (uncertainty->count)
-    PetscCall(LamUncertaintyRun(uncertainty, command->scene_path, command->run.out_path, console->json, console->quiet,
-                                exit_status));
+    PetscCall(LamUncertaintyRun(uncertainty, command->scene_path, command->run.out_path, command->run.overwrite,
+                                console->json, console->quiet, exit_status));
   else
-    PetscCall(LamRealisationsRun(realisations, command->scene_path, command->run.out_path, console->json,
-                                 console->quiet, exit_status));
+    PetscCall(LamRealisationsRun(realisations, command->scene_path, command->run.out_path, command->run.overwrite,
+                                 console->json, console->quiet, exit_status));
   PetscFunctionReturn(0);
 }
 
@@ -351,6 +351,7 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
       {'o', "output", LAM_OPTION_TEXT, "OUT.h5",
        "states and fields, for plot and query, with OUT.xdmf (for ParaView) and OUT.csv (a table) beside it",
        &run->out_path},
+      LAM_OVERWRITE_OPTION(run->overwrite),
       {0, "json", LAM_OPTION_FLAG, NULL, "one JSON object per state on stdout", &command.console.json},
       {0, "tangent", LAM_OPTION_FLAG, NULL, "the effective tangent too", &command.tangent},
       {0, "second-mesh", LAM_OPTION_FLAG, NULL,
@@ -384,11 +385,12 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(
       args,
-      "rve SCENE [-o OUT.h5] [--json] [--tangent] [--second-mesh] [--onset] [--failure] [--readings]\n"
-      "           [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]\n"
-      "       lamella rve SCENE --realisations N [--cells N,...] [--processes N] [-o FOLDER] [--json]\n"
-      "           [--quiet]\n"
-      "       lamella rve SCENE --uncertainty N [--failure] [--processes N] [-o FOLDER] [--json] [--quiet]",
+      "rve SCENE [-o OUT.h5] [--overwrite] [--json] [--tangent] [--second-mesh] [--onset] [--failure]\n"
+      "           [--readings] [--at STRAIN,...] [--global] [--no-estimate] [--monitor] [--quiet]\n"
+      "       lamella rve SCENE --realisations N [--cells N,...] [--processes N] [-o FOLDER]\n"
+      "           [--overwrite] [--json] [--quiet]\n"
+      "       lamella rve SCENE --uncertainty N [--failure] [--processes N] [-o FOLDER] [--overwrite] [--json]\n"
+      "           [--quiet]",
       "Solves the representative volume element along the scene's load.", options, 1, &command.scene_path, &done,
       exit_status));
   if (done || !StudiesFit(&command, &realisations, &uncertainty, exit_status)) PetscFunctionReturn(0);
@@ -396,7 +398,9 @@ PetscErrorCode LamCommandRVE(LamArgs *args, int *exit_status)
     PetscCall(RunStudy(&command, &realisations, &uncertainty, exit_status));
     PetscFunctionReturn(0);
   }
-  if (!LamTestReadOptions("rve", &command.console.test, exit_status)) PetscFunctionReturn(0);
+  if (!LamTestReadOptions("rve", &command.console.test, exit_status) ||
+      !LamOutputIsHDF5("rve", run->out_path, exit_status))
+    PetscFunctionReturn(0);
   run->readings = command.console.test.readings;
   if (run->find_onset) run->second_mesh = PETSC_TRUE;
   PetscCall(args->start(args));

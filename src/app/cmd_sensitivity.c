@@ -7,13 +7,14 @@
 typedef struct {
   const char *scene, *output, *figure;
   PetscInt evaluations, seed, processes;
-  PetscBool json;
+  PetscBool overwrite, json;
 } Request;
 
 static PetscErrorCode Run(const Request *r, int *exit_status)
 {
-  json_t *o = json_pack("{s:s, s:s*, s:s*, s:i, s:i, s:b}", "scene", r->scene, "output", r->output, "figure", r->figure,
-                        "evaluations", (int)r->evaluations, "seed", (int)r->seed, "json", r->json);
+  json_t *o =
+      json_pack("{s:s, s:s*, s:s*, s:i, s:i, s:b, s:b}", "scene", r->scene, "output", r->output, "figure", r->figure,
+                "evaluations", (int)r->evaluations, "seed", (int)r->seed, "overwrite", r->overwrite, "json", r->json);
 
   PetscFunctionBeginUser;
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "an argument is not in UTF-8");
@@ -28,6 +29,7 @@ PetscErrorCode LamCommandSensitivity(LamArgs *args, int *exit_status)
   PetscBool done;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "FOLDER", "sensitivity.json, for plot, and samples.csv", &r.output},
+      LAM_OVERWRITE_OPTION(r.overwrite),
       {0, "evaluations", LAM_OPTION_FROM_1, "N", "about so many tests are solved (default: 1000)", &r.evaluations},
       {0, "figure", LAM_OPTION_TEXT, "NAME,...", "these alone, as modulus,peak.stress (default: all that there are)",
        &r.figure},
@@ -40,7 +42,7 @@ PetscErrorCode LamCommandSensitivity(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args,
                             "sensitivity SCENE [-o FOLDER] [--evaluations N] [--figure NAME,...] [--seed N]\n"
-                            "                           [--processes N] [--json]",
+                            "                           [--processes N] [--overwrite] [--json]",
                             "Finds how figures of the scene's test depend on its uncertain keys.", options, 1, &r.scene,
                             &done, exit_status));
   if (!done) PetscCall(Run(&r, exit_status));

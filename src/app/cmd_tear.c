@@ -18,6 +18,7 @@ typedef struct {
   const char *scene_path, *out_path, *turgor_text, *modes, *separation_text;
   PetscReal turgor[MOST_TURGORS], start;
   LamBeside csv; /* with -o */
+  PetscBool overwrite;
   LamTear tear;
 } Command;
 
@@ -52,11 +53,19 @@ static Units UnitsOf(const LamTear *tear)
   X("F12", "", p->F[0][1])                                                                                             \
   X("F22", "", p->F[1][1])
 
+#define NAME_ENTRY(name, unit, value) name unit,
+static const char *const Columns[] = {COLUMNS(NAME_ENTRY) NULL};
+static const LamTextKind Table = {.what = "a table of lamella tear",
+                                  .ending = "",
+                                  .begins = "mode,turgor (MPa),separation (um),traction (MPa)",
+                                  .columns = Columns,
+                                  .ends = ",jumped"};
+
 static PetscErrorCode OpenTable(Command *command)
 {
   PetscFunctionBeginUser;
   if (!command->out_path) PetscFunctionReturn(0);
-  PetscCall(LamBesideOpen(command->out_path, "", &command->csv));
+  PetscCall(LamBesideOpen(command->out_path, &Table, &command->csv));
 #define PRINT_NAME(name, unit, value) fputs("," name unit, command->csv.out);
   fputs("mode,turgor (MPa)", command->csv.out);
   COLUMNS(PRINT_NAME)
@@ -320,6 +329,7 @@ static PetscErrorCode RunOnRoot(Command *command, int *exit_status)
   tear->curve = Report;
   command->start = LamClock();
   PetscCall(LamSceneRead(command->scene_path, &tear->scene));
+  if (command->out_path) PetscCall(LamTargetCheckText(command->out_path, &Table, command->overwrite, tear->scene));
   PetscCall(LamTearPrepare(tear));
   PetscCall(OpenTable(command));
   ierr = LamTearRun(tear);
@@ -346,6 +356,7 @@ PetscErrorCode LamCommandTear(LamArgs *args, int *exit_status)
   PetscBool done, right;
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.csv", "the table of all curves", &command.out_path},
+      LAM_OVERWRITE_OPTION(command.overwrite),
       {0, "turgor", LAM_OPTION_TEXT, "PRESSURE,...", "turgors, such as 0,0.1,0.3 MPa; default: the scene's",
        &command.turgor_text},
       {0, "modes", LAM_OPTION_TEXT, "MODE,...", "opening, shear or both, which is the default", &command.modes},
@@ -361,7 +372,7 @@ PetscErrorCode LamCommandTear(LamArgs *args, int *exit_status)
   PetscFunctionBeginUser;
   PetscCall(LamOptionsParse(args,
                             "tear SCENE [-o OUT.csv] [--turgor PRESSURE,...] [--modes MODE,...] [--separation LENGTH]\n"
-                            "            [--steps N] [--json] [--quiet]",
+                            "            [--steps N] [--overwrite] [--json] [--quiet]",
                             "Tears a layer of tissue: traction against separation, as a cohesive law.", options, 1,
                             &command.scene_path, &done, exit_status));
   if (done) PetscFunctionReturn(0);

@@ -6,16 +6,16 @@
 typedef struct {
   const char *output, *size, *variation, *elongation, *direction, *aspect, *wall_thickness, *gas;
   PetscInt cells, seed;
-  PetscBool json;
+  PetscBool overwrite, json;
 } Request;
 
 static PetscErrorCode Make(const Request *r, int *exit_status)
 {
   /* members whose value is NULL are left out */
-  json_t *o = json_pack("{s:s, s:s, s:i, s:i, s:b, s:s*, s:s*, s:s*, s:s*, s:s*, s:s*}", "output", r->output, "size",
-                        r->size, "cells", (int)r->cells, "seed", (int)r->seed, "json", r->json, "variation",
-                        r->variation, "elongation", r->elongation, "direction", r->direction, "aspect", r->aspect,
-                        "wall_thickness", r->wall_thickness, "gas", r->gas);
+  json_t *o = json_pack("{s:s, s:s, s:i, s:i, s:b, s:b, s:s*, s:s*, s:s*, s:s*, s:s*, s:s*}", "output", r->output,
+                        "size", r->size, "cells", (int)r->cells, "seed", (int)r->seed, "overwrite", r->overwrite,
+                        "json", r->json, "variation", r->variation, "elongation", r->elongation, "direction",
+                        r->direction, "aspect", r->aspect, "wall_thickness", r->wall_thickness, "gas", r->gas);
 
   PetscFunctionBeginUser;
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "an argument is not in UTF-8");
@@ -28,6 +28,7 @@ PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status)
   Request r = {.output = NULL};
   const LamOption options[] = {
       {'o', "output", LAM_OPTION_TEXT, "OUT.json", "the tissue", &r.output},
+      LAM_OVERWRITE_OPTION(r.overwrite),
       {0, "cells", LAM_OPTION_FROM_1, "N", "number of cells in a period", &r.cells},
       {0, "size", LAM_OPTION_TEXT, "LENGTH", "diameter of a circle of the cells' mean area, \"150 um\"", &r.size},
       {0, "variation", LAM_OPTION_TEXT, "SHARE",
@@ -48,7 +49,7 @@ PetscErrorCode LamCommandTissue(LamArgs *args, int *exit_status)
                             "tissue -o OUT.json --cells N --size LENGTH [--variation SHARE] [--elongation RATIO]\n"
                             "                      [--direction ANGLE] [--aspect RATIO] [--wall-thickness LENGTH] "
                             "[--gas SHARE]\n"
-                            "                      [--seed N] [--json]",
+                            "                      [--seed N] [--overwrite] [--json]",
                             "Makes a file of irregular cells with these statistics, with Python and its package scipy.",
                             options, 0, NULL, &done, exit_status));
   if (done) PetscFunctionReturn(0);

@@ -236,21 +236,29 @@ static json_t *Reference(const LamTradeoff *t)
                    "core_seconds", LamJSONReal(r->cpu), "states_used", (json_int_t)r->used_count);
 }
 
-/* Writes DIR/NAME.json atomically; takes ownership. */
-static PetscErrorCode WriteJSON(const char directory[], const char name[], json_t *object)
+/* The files of the folder. Those of version 0.1 have no member `lamella_...`. */
+static const LamTextKind Data = {.what = "what lamella tradeoff has measured",
+                                 .ending = "/tradeoff.json",
+                                 .begins = "{\n \"lamella_tradeoff\": *",
+                                 .before = "{\n \"version\": *,\n \"scene\": *,\n \"tissue\": *,\n \"volume\": *"},
+                         Model = {.what = "a model of lamella tradeoff",
+                                  .ending = "/model.json",
+                                  .begins = "{\n \"lamella_model\": *",
+                                  .before = "{\n \"format\": 1,\n \"version\": *,\n \"tissue\": *,\n \"states\": *"};
+
+/* Writes a file of the folder atomically; takes ownership. */
+static PetscErrorCode WriteJSON(const char directory[], const LamTextKind *kind, json_t *object)
 {
-  char path[PETSC_MAX_PATH_LEN];
   LamBeside file;
   int failed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s.h5", directory, name)); /* only its name is used */
-  PetscCall(LamBesideOpen(path, ".json", &file));
+  PetscCall(LamBesideOpen(directory, kind, &file));
   failed = json_dumpf(object, file.out, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
   json_decref(object);
   fputc('\n', file.out);
   PetscCall(LamBesideClose(&file));
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s/%s.json: cannot be written", directory, name);
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s%s: cannot be written", directory, kind->ending);
   PetscFunctionReturn(0);
 }
 
@@ -269,12 +277,13 @@ static PetscErrorCode WriteData(const LamTradeoff *t, const char directory[], co
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < t->n; i++) json_array_append_new(settings, Measured(&t->measured[i]));
-  PetscCall(WriteJSON(directory, "tradeoff",
-                      json_pack("{s:s, s:s, s:s, s:s, s:o, s:I, s:o, s:b, s:s, s:o, s:o, s:o, s:o}", "version",
-                                LAMELLA_VERSION, "scene", t->scene->path, "tissue", hash, "volume", OpeningName(t),
-                                "budget", LamJSONReal(t->budget), "repeats", (json_int_t)t->repeats, "seconds",
-                                LamJSONReal(t->seconds), "stopped", t->stopped, "origin", t->states.origin, "states",
-                                States(t), "reference", Reference(t), "left_out", LeftOut(t), "settings", settings)));
+  PetscCall(WriteJSON(directory, &Data,
+                      json_pack("{s:I, s:s, s:s, s:s, s:s, s:o, s:I, s:o, s:b, s:s, s:o, s:o, s:o, s:o}",
+                                "lamella_tradeoff", (json_int_t)1, "version", LAMELLA_VERSION, "scene", t->scene->path,
+                                "tissue", hash, "volume", OpeningName(t), "budget", LamJSONReal(t->budget), "repeats",
+                                (json_int_t)t->repeats, "seconds", LamJSONReal(t->seconds), "stopped", t->stopped,
+                                "origin", t->states.origin, "states", States(t), "reference", Reference(t), "left_out",
+                                LeftOut(t), "settings", settings)));
   PetscFunctionReturn(0);
 }
 
@@ -295,9 +304,10 @@ static PetscErrorCode WriteModel(const LamTradeoff *t, const char directory[], c
     json_object_set_new(mesh, "seconds_per_state", LamJSONReal(LamSpreadOf(m->runs, m->state_cpu).median));
     json_array_append_new(meshes, mesh);
   }
-  PetscCall(WriteJSON(directory, "model",
-                      json_pack("{s:I, s:s, s:s, s:o, s:o, s:o}", "format", (json_int_t)1, "version", LAMELLA_VERSION,
-                                "tissue", hash, "states", States(t), "reference", Reference(t), "meshes", meshes)));
+  PetscCall(WriteJSON(directory, &Model,
+                      json_pack("{s:I, s:I, s:s, s:s, s:o, s:o, s:o}", "lamella_model", (json_int_t)1, "format",
+                                (json_int_t)1, "version", LAMELLA_VERSION, "tissue", hash, "states", States(t),
+                                "reference", Reference(t), "meshes", meshes)));
   PetscFunctionReturn(0);
 }
 
@@ -332,6 +342,7 @@ static PetscErrorCode WriteFiles(const LamTradeoff *t, const char directory[], i
 
 typedef struct {
   const char *directory, *budget_text, *only;
+  PetscBool overwrite;
   LamTradeoff tradeoff;
   LamConsole console;
 } Command;
@@ -340,14 +351,21 @@ typedef struct {
 static PetscErrorCode CheckDirectory(const Command *run)
 {
   struct stat status;
+  LamScene *scene;
+  PetscErrorCode ierr;
 
   PetscFunctionBeginUser;
   if (!run->directory) PetscFunctionReturn(0);
+  PetscCall(LamSceneRead(run->tradeoff.scene_path, &scene));
   PetscCheck((!mkdir(run->directory, 0777) || errno == EEXIST) && !stat(run->directory, &status), PETSC_COMM_SELF,
              PETSC_ERR_FILE_OPEN, "%s: %s", run->directory, strerror(errno));
   PetscCheck(S_ISDIR(status.st_mode), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: is no folder", run->directory);
   PetscCheck(!access(run->directory, W_OK | X_OK), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", run->directory,
              strerror(errno));
+  ierr = LamTargetCheckText(run->directory, &Data, run->overwrite, scene);
+  if (!ierr) ierr = LamTargetCheckText(run->directory, &Model, run->overwrite, scene);
+  PetscCall(LamSceneDestroy(&scene));
+  PetscCall(ierr);
   PetscFunctionReturn(0);
 }
 
@@ -434,6 +452,7 @@ PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status)
       {'o', "output", LAM_OPTION_TEXT, "DIR",
        "folder for tradeoff.json, tradeoff.png and .svg (the diagram) and model.json; made where it is missing",
        &run.directory},
+      LAM_OVERWRITE_OPTION(run.overwrite),
       {0, "budget", LAM_OPTION_TEXT, "SECONDS", "how long it may measure, in all; default 120", &run.budget_text},
       {0, "repeats", LAM_OPTION_FROM_1, "N", "how often each setting is measured; default 3", &run.tradeoff.repeats},
       {0, "only", LAM_OPTION_TEXT, "FAMILY,...", "of mesh, strategy, sharpness, cells, tolerance, database, macro",
@@ -444,10 +463,12 @@ PetscErrorCode LamCommandTradeoff(LamArgs *args, int *exit_status)
   };
 
   PetscFunctionBeginUser;
-  PetscCall(LamOptionsParse(
-      args, "tradeoff SCENE [-o DIR] [--budget SECONDS] [--repeats N] [--only FAMILY,...] [--json] [--quiet]",
-      "Measures error against time over the knobs of a scene that trade them.", options, 1, &run.tradeoff.scene_path,
-      &done, exit_status));
+  PetscCall(
+      LamOptionsParse(args,
+                      "tradeoff SCENE [-o DIR] [--overwrite] [--budget SECONDS] [--repeats N] [--only FAMILY,...]\n"
+                      "                [--json] [--quiet]",
+                      "Measures error against time over the knobs of a scene that trade them.", options, 1,
+                      &run.tradeoff.scene_path, &done, exit_status));
   if (done || !ReadValues(&run, exit_status)) PetscFunctionReturn(0);
   PetscCall(args->start(args));
   if (IsSerial(exit_status)) PetscCall(Solve(&run, exit_status));

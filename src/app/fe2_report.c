@@ -351,7 +351,7 @@ PetscErrorCode LamFE2ReportEnd(const LamFE2Run *run, const LamConsole *console)
   printf("%" PetscInt_FMT " steps, %" PetscInt_FMT " Newton iterations, %lld queries, %lld hits, %lld solves, "
          "%lld failures, %.3g s, of these %.2g s for checkpoints; response %s\n",
          totals->steps, totals->newton_iterations, (long long)totals->queries, (long long)totals->hits,
-         (long long)totals->solves, (long long)totals->failures, LamClock() - run->start, (double)run->all_save_seconds,
+         (long long)totals->solves, (long long)totals->failures, LamClock() - run->start, (double)run->save_seconds,
          LamFE2ResponseNames[run->response]);
   PetscFunctionReturn(0);
 }

@@ -84,6 +84,18 @@ PetscBool LamUsageError(const char command[], int *exit_status, const char forma
   return PETSC_FALSE;
 }
 
+PetscBool LamOutputIsHDF5(const char command[], const char path[], int *exit_status)
+{
+  static const char *const others[] = {".csv", ".xdmf", ".json", ".yaml", ".yml", ".msh", ".png", ".svg", ".pdf"};
+  const char *dot = path ? strrchr(path, '.') : NULL;
+
+  for (size_t i = 0; dot && i < PETSC_STATIC_ARRAY_LENGTH(others); i++)
+    if (!strcmp(dot, others[i]))
+      return LamUsageError(command, exit_status, "-o %s: an HDF5 file is written there; name it %.*s.h5", path,
+                           (int)(dot - path), path);
+  return PETSC_TRUE;
+}
+
 static PetscBool ReadValue(const char command[], const LamOption *option, const char text[], int *exit_status)
 {
   const int least = PetscMax(0, (int)option->type - LAM_OPTION_FROM_0);

@@ -11,11 +11,12 @@ PetscBool LamRealisationsFit(const LamRealisations *r, const char unused[], int 
   return (PetscBool)(!r->count || LamPythonStudyFits("rve", "realisations", unused, exit_status));
 }
 
-PetscErrorCode LamRealisationsRun(const LamRealisations *r, const char scene[], const char folder[], PetscBool json,
-                                  PetscBool quiet, int *exit_status)
+PetscErrorCode LamRealisationsRun(const LamRealisations *r, const char scene[], const char folder[],
+                                  PetscBool overwrite, PetscBool json, PetscBool quiet, int *exit_status)
 {
-  json_t *o = json_pack("{s:s, s:s, s:i, s:b, s:b, s:s*}", "scene", scene, "output", folder ? folder : "realisations",
-                        "realisations", (int)r->count, "json", json, "quiet", quiet, "cells", r->cells);
+  json_t *o =
+      json_pack("{s:s, s:s, s:i, s:b, s:b, s:b, s:s*}", "scene", scene, "output", folder ? folder : "realisations",
+                "realisations", (int)r->count, "overwrite", overwrite, "json", json, "quiet", quiet, "cells", r->cells);
 
   PetscFunctionBeginUser;
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: a name is not in UTF-8", scene);

@@ -16,6 +16,6 @@ typedef struct {
 PetscBool LamRealisationsFit(const LamRealisations *realisations, const char unused[], int *exit_status);
 /* folder: of all files; NULL: the default one. */
 PetscErrorCode LamRealisationsRun(const LamRealisations *realisations, const char scene[], const char folder[],
-                                  PetscBool json, PetscBool quiet, int *exit_status);
+                                  PetscBool overwrite, PetscBool json, PetscBool quiet, int *exit_status);
 
 #endif

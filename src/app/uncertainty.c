@@ -4,11 +4,12 @@
 */
 #include "uncertainty.h"
 
-PetscErrorCode LamUncertaintyRun(const LamUncertainty *u, const char scene[], const char folder[], PetscBool json,
-                                 PetscBool quiet, int *exit_status)
+PetscErrorCode LamUncertaintyRun(const LamUncertainty *u, const char scene[], const char folder[], PetscBool overwrite,
+                                 PetscBool json, PetscBool quiet, int *exit_status)
 {
-  json_t *o = json_pack("{s:s, s:s, s:s*, s:i, s:b, s:b, s:b}", "command", u->command, "scene", scene, "output", folder,
-                        "samples", (int)u->count, "failure", u->failure, "json", json, "quiet", quiet);
+  json_t *o =
+      json_pack("{s:s, s:s, s:s*, s:i, s:b, s:b, s:b, s:b}", "command", u->command, "scene", scene, "output", folder,
+                "samples", (int)u->count, "failure", u->failure, "overwrite", overwrite, "json", json, "quiet", quiet);
 
   PetscFunctionBeginUser;
   PetscCheck(o, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: a name is not in UTF-8", scene);

@@ -20,6 +20,6 @@ typedef struct {
   }
 /* folder: of uncertainty.json; NULL: none is written. */
 PetscErrorCode LamUncertaintyRun(const LamUncertainty *uncertainty, const char scene[], const char folder[],
-                                 PetscBool json, PetscBool quiet, int *exit_status);
+                                 PetscBool overwrite, PetscBool json, PetscBool quiet, int *exit_status);
 
 #endif

@@ -158,6 +158,11 @@ void LamBindSceneNumbers(LamBindScene scene, double numbers[4])
   numbers[3] = scene->scene->cohesion * scales->stress;
 }
 
+const char *LamBindSceneFile(LamBindScene bound, int k)
+{
+  return k < bound->scene->file_count ? bound->scene->files[k].path : NULL;
+}
+
 static void LoadToRow(const LamScene *scene, PetscInt k, double row[LOAD], double P[9])
 {
   const LamStressControl *control = scene->controls ? &scene->controls[k] : NULL;

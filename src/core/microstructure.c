@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "hash.h"
 #include "tissue_json.h"
 
 const char *const LamInterfaceLawNames[] = {LAM_INTERFACE_LAWS(LAM_NAME_ENTRY)};
@@ -15,15 +16,6 @@ const char *const LamSofteningNames[] = {LAM_SOFTENINGS(LAM_NAME_ENTRY)};
 const char *const LamStrategyNames[] = {LAM_STRATEGIES(LAM_NAME_ENTRY)};
 const char *const LamSharpnessNames[] = {LAM_SHARPNESSES(LAM_NAME_ENTRY)};
 const char *const LamPatchSidesNames[] = {LAM_PATCH_SIDES(LAM_NAME_ENTRY)};
-
-/* 64-bit FNV-1a (Fowler, Noll, Vo): an identifier, not cryptographic. */
-static uint64_t Hash(const char text[])
-{
-  uint64_t hash = 0xcbf29ce484222325u;
-
-  for (; *text; text++) hash = (hash ^ (unsigned char)*text) * 0x100000001b3u;
-  return hash;
-}
 
 /* Unit conversion has rounding errors of about 1e-16, also around zero. */
 static double Clean(PetscReal value)
@@ -153,7 +145,7 @@ PetscErrorCode LamMicrostructureDescribe(const LamMicrostructure *micro, char **
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the description of a microstructure");
   Describe(micro, out);
   PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the description of a microstructure");
-  snprintf(hash, LAM_HASH_LENGTH, "%016llx", (unsigned long long)Hash(text));
+  snprintf(hash, LAM_HASH_LENGTH, "%016llx", (unsigned long long)LamHashBytes(LAM_HASH_START, text, strlen(text)));
   ierr = PetscStrallocpy(text, json);
   free(text);
   PetscCall(ierr);

@@ -1,7 +1,6 @@
 /*
   The header of record files: provenance, units, microstructure and the commit counter. It is written once, when the
-  file is created; commits only overwrite the counter. Every size and type is checked before it is used. The file that a
-  writer creates or continues: a new one may only replace one of the same kind, which is lost at the first commit.
+  file is created; commits only overwrite the counter. Every size and type is checked before it is used.
 */
 #include "record_internal.h"
 #include <lamella/version.h>
@@ -9,7 +8,6 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #define DESCRIPTION "/microstructures/%s/description"
@@ -148,7 +146,7 @@ static PetscErrorCode WriteEmptyRecords(const char path[], hid_t file, const Lam
 static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[], const LamScene *scene,
                                const char json[], char hash[])
 {
-  char name[64];
+  char name[64], *files;
   uint32_t sum;
 
   PetscFunctionBeginUser;
@@ -156,6 +154,11 @@ static PetscErrorCode WriteAll(const char path[], hid_t file, const char kind[],
   snprintf(name, sizeof(name), DESCRIPTION, hash);
   PetscCall(LamFileWriteText(path, file, name, json));
   if (scene->text) PetscCall(LamFileWriteText(path, file, "/scene", scene->text));
+  if (scene->file_count) {
+    PetscCall(LamSceneDescribeFiles(scene, &files));
+    PetscCall(LamFileWriteText(path, file, LAM_SCENE_FILES, files));
+    PetscCall(PetscFree(files));
+  }
   PetscCall(WriteHeader(path, file, kind, scene, hash));
   PetscCall(LamHeaderSum(path, file, &sum));
   PetscCall(LamSumWrite(path, file, LAM_SUM, sum));
@@ -345,42 +348,5 @@ PetscErrorCode LamFileReadKind(const char path[], char kind[LAM_NAME_LENGTH])
 {
   PetscFunctionBeginUser;
   PetscCall(LamFileRead(path, GetKind, kind));
-  PetscFunctionReturn(0);
-}
-
-/* ---- the target of a writer ---- */
-
-/* Whatever the reason why a file cannot be read, it must not be replaced. */
-static PetscErrorCode CheckReplaceable(const char path[], const char kind[])
-{
-  char present[LAM_NAME_LENGTH] = "";
-  PetscErrorCode ierr;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  ierr = LamFileReadKind(path, present);
-  PetscCall(PetscPopErrorHandler());
-  PetscCheck(!ierr, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: exists and is not a file of lamella, or a damaged one; give another file name or remove it", path);
-  PetscCheck(!strcmp(present, kind), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: exists and is of kind \"%s\", \"%s\" is to be written; give another file name or remove it", path,
-             present, kind);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN])
-{
-  struct stat status;
-  const PetscBool exists = (PetscBool)!stat(path, &status);
-
-  PetscFunctionBeginUser;
-  PetscCheck(!exists || S_ISREG(status.st_mode), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: exists and is a %s; give another file name", path,
-             S_ISDIR(status.st_mode) ? "folder" : "device, pipe or socket");
-  PetscCheck(LamPathFollow(path, target) && strlen(target) + 8 < PETSC_MAX_PATH_LEN, PETSC_COMM_SELF,
-             exists ? PETSC_ERR_FILE_OPEN : PETSC_ERR_USER_INPUT, "%s: %s", path,
-             strlen(path) + 8 < PETSC_MAX_PATH_LEN ? "is a link that leads to no file; give another file name"
-                                                   : "the path is too long");
-  if (exists && status.st_size && mode == LAM_WRITE_CREATE) PetscCall(CheckReplaceable(target, kind));
   PetscFunctionReturn(0);
 }

@@ -207,8 +207,6 @@ PetscErrorCode LamHeaderReadRoot(const char path[], hid_t file, PetscBool *match
 PetscErrorCode LamHeaderSum(const char path[], hid_t file, uint32_t *sum);
 /* Sets the number of committed records and the sum of their checksums; does not sync. */
 PetscErrorCode LamCounterWrite(const char path[], hid_t dataset, PetscInt committed, uint32_t records_sum);
-/* The file to which a writer of `path` writes: resolves links, and rejects files that CREATE must not replace. */
-PetscErrorCode LamTargetFind(const char path[], const char kind[], LamWriteMode mode, char target[PETSC_MAX_PATH_LEN]);
 
 /* ---- record_preallocate.c ---- */
 

@@ -7,6 +7,7 @@
   next commit overwrites those beyond it. A new file is created under another name and renamed at the first commit.
 */
 #include "record_internal.h"
+#include "target.h"
 #include "microstructure_compare.h"
 #include <errno.h>
 #include <fcntl.h>

@@ -21,6 +21,7 @@ PetscErrorCode LamSceneDestroy(LamScene **scene)
   PetscCall(PetscFree((*scene)->controls));
   PetscCall(LamMicrostructureDestroy(&(*scene)->micro));
   PetscCall(LamSceneDestroyRegions(*scene));
+  PetscCall(LamSceneDestroyFiles(*scene));
   PetscCall(LamSceneDestroyProcess(*scene));
   PetscCall(PetscFree(*scene));
   PetscFunctionReturn(0);
@@ -66,9 +67,9 @@ static void ChooseContact(LamMicrostructure *micro)
 static PetscErrorCode SceneBuild(LamDocument *document, LamScene *scene)
 {
   static PetscErrorCode (*const parts[])(const LamNode *, LamScene *) = {
-      LamSceneBuildRVE,    LamSceneBuildStrength, LamSceneBuildLoad,     LamSceneBuildMacro,
-      LamSceneBuildSample, LamSceneBuildRegions,  LamSceneBuildResponse, LamSceneCheckPatch,
-      LamSceneBuildMap,    LamSceneBuildProcess,  LamSceneCheckUncertain};
+      LamSceneBuildRVE,    LamSceneBuildStrength, LamSceneBuildLoad,      LamSceneBuildMacro,
+      LamSceneBuildSample, LamSceneBuildRegions,  LamSceneBuildResponse,  LamSceneCheckPatch,
+      LamSceneBuildMap,    LamSceneBuildProcess,  LamSceneCheckUncertain, LamSceneBuildFiles};
 
   PetscFunctionBeginUser;
   PetscCall(LamDocumentParse(document->name, document->text, document));

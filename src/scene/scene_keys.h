@@ -133,6 +133,7 @@ PetscErrorCode LamSceneBuildBoundaries(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneCheckSide(const LamNode *on, const LamMacroSpec *spec, PetscInt *side);
 PetscErrorCode LamSceneBuildMap(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneCheckUncertain(const LamNode *root, LamScene *scene);
+PetscErrorCode LamSceneBuildFiles(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneBuildProcess(const LamNode *root, LamScene *scene);
 PetscErrorCode LamSceneDestroyProcess(LamScene *scene);
 /* scene_transport.c, part of the block `process`: after its water and surroundings. */
@@ -142,6 +143,7 @@ PetscErrorCode LamSceneBuildTransport(const LamNode *process, LamScene *scene);
    takes once. */
 PetscErrorCode LamSceneDoubtProcess(const LamNode *block, LamScene *scene, PetscReal cycle);
 PetscErrorCode LamSceneDestroyRegions(LamScene *scene);
+PetscErrorCode LamSceneDestroyFiles(LamScene *scene);
 
 /* scene_tissue.c, part of the RVE: cells of a file (`rve.tissue`), with their number and the scale of lengths, before
    anything is nondimensional; then the thicknesses of their walls. Only with the key. */

@@ -7,15 +7,11 @@
 #include <string.h>
 #include <unistd.h>
 
-PetscErrorCode LamBesideOpen(const char hdf5[], const char ending[], LamBeside *file)
+PetscErrorCode LamBesideOpen(const char hdf5[], const LamTextKind *kind, LamBeside *file)
 {
-  const char *dot = strrchr(hdf5, '.');
-  int stem = (int)strlen(hdf5);
-
   PetscFunctionBeginUser;
-  if (dot && (!strcmp(dot, ".h5") || !strcmp(dot, ".hdf5"))) stem = (int)(dot - hdf5);
-  PetscCall(PetscSNPrintf(file->path, sizeof(file->path), "%.*s%s", stem, hdf5, ending));
-  PetscCall(PetscSNPrintf(file->temporary, sizeof(file->temporary), "%.*s%s.tmp", stem, hdf5, ending));
+  PetscCall(LamTargetBeside(hdf5, kind->ending, file->path));
+  PetscCall(PetscSNPrintf(file->temporary, sizeof(file->temporary), "%s.tmp", file->path));
   file->out = fopen(file->temporary, "w");
   PetscCheck(file->out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s: %s", file->temporary, strerror(errno));
   PetscFunctionReturn(0);

@@ -4,7 +4,7 @@
 #ifndef LAM_BESIDE_H
 #define LAM_BESIDE_H
 
-#include <petscsys.h>
+#include "target.h"
 #include <stdio.h>
 
 typedef struct {
@@ -12,9 +12,9 @@ typedef struct {
   char path[PETSC_MAX_PATH_LEN], temporary[PETSC_MAX_PATH_LEN];
 } LamBeside;
 
-/* `ending` (".csv") replaces .h5 or .hdf5. Text written to `out` appears under the final name when the file is closed.
-   Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE. */
-PetscErrorCode LamBesideOpen(const char hdf5[], const char ending[], LamBeside *file);
+/* Text written to `out` appears under the final name when the file is closed, in place of what stands there
+   (LamTargetCheckText). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE. */
+PetscErrorCode LamBesideOpen(const char hdf5[], const LamTextKind *kind, LamBeside *file);
 PetscErrorCode LamBesideClose(LamBeside *file);
 /* A comma and a number of a table; nothing behind the comma if it is not known. */
 void LamBesideNumber(FILE *out, PetscReal value);

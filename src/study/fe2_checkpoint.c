@@ -1,19 +1,17 @@
 /*
   OUT.h5.ckpt: the checkpoint from which a killed or stopped macroscale run resumes.
 
-  Method. The file is rewritten after a complete step, when results and database have the step, and is renamed to its
-  final name when it is on the disk. It is written after every step, or less often where that would take more than
-  LARGEST_SHARE of the time. So a kill leaves a checkpoint of a complete step, and results with at least this step;
-  later steps are overwritten. The database may have grown since: the checkpoint lists the records that the run had
-  used, in their order. Other records are treated as not solved; when one would be solved, it is read from the file.
+  Method. The file is rewritten after every complete step, when results and database have the step, and is renamed to
+  its final name when it is on the disk. So a kill leaves a checkpoint of the last complete step of the results, or,
+  between their writing and its renaming, of the one before. The database may have grown since: the checkpoint lists the
+  records that the run had used, in their order. Other records are treated as not solved; when one would be solved, it
+  is read from the file.
 */
 #include "fe2_run.h"
 #include <stdio.h>
 #include <string.h>
 #include "clock.h"
 #include <unistd.h>
-
-static const PetscReal LARGEST_SHARE = 0.02; /* of the run time spent on checkpoints */
 
 static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_PATH_LEN])
 {
@@ -22,46 +20,50 @@ static PetscErrorCode CheckpointPath(const LamFE2Run *run, char path[PETSC_MAX_P
   PetscFunctionReturn(0);
 }
 
-/* ---- identity of the run ---- */
-
-static size_t LineLength(const char text[])
+PetscErrorCode LamFE2CheckpointCheckTarget(const LamFE2Run *run)
 {
-  return strcspn(text, "\n");
-}
-
-/* PETSC_ERR_USER_INPUT, with the first line that differs, unless the texts are equal; `before` is the file's text. */
-static PetscErrorCode CompareScenes(const char path[], const char before[], const char now[])
-{
-  int line = 1;
+  static const LamTextKind checkpoint = {.what = "a checkpoint", .ending = "", .begins = "\x89HDF*"};
+  char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (!strcmp(before, now)) PetscFunctionReturn(0);
-  for (;; line++) {
-    const size_t a = LineLength(before), b = LineLength(now);
-    if (a != b || strncmp(before, now, a) || !before[a] || !now[b]) break;
-    before += a + 1;
-    now += b + 1;
-  }
-  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-          "%s: belongs to another scene; line %d was \"%.*s\" and is \"%.*s\"; restore it, or leave out --resume", path,
-          line, (int)LineLength(before), before, (int)LineLength(now), now);
+  PetscCall(CheckpointPath(run, path));
+  PetscCall(LamTargetCheckText(path, &checkpoint, run->overwrite, run->scene));
+  PetscFunctionReturn(0);
 }
 
-/* Writes scene and type of response, or reads them and raises an error if they differ from this run's. */
+/* ---- identity of the run ---- */
+
+/* A text of rank 0; reading: *text is that of the file, which the caller frees. */
+static PetscErrorCode ArchiveText(LamFE2Run *run, LamArchive archive, const char name[], char **text)
+{
+  PetscInt length = LamIsFirst(run->comm) ? (PetscInt)strlen(*text) + 1 : 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamArchiveList(archive, name, 1, &length, (void **)text));
+  PetscFunctionReturn(0);
+}
+
+/* Writes scene, contents of its files and type of response, or reads them and raises an error if they differ from this
+   run's. */
 static PetscErrorCode ArchiveIdentity(LamFE2Run *run, LamArchive archive, const char path[])
 {
-  PetscInt length = LamIsFirst(run->comm) ? (PetscInt)strlen(run->scene->text) + 1 : 0;
-  char *text = run->scene->text;
+  const PetscBool reading = LamArchiveIsReading(archive);
+  char *text = run->scene->text, *files, *now;
   PetscErrorCode ierr = 0;
   int response = run->response;
 
   PetscFunctionBeginUser;
-  PetscCall(LamArchiveList(archive, "scene", 1, &length, (void **)&text));
+  PetscCall(LamSceneDescribeFiles(run->scene, &now));
+  files = now;
+  PetscCall(ArchiveText(run, archive, "scene", &text));
+  PetscCall(ArchiveText(run, archive, "scene files", &files));
   PetscCall(LamArchiveShared(archive, "response", sizeof(response), &response));
-  if (!LamArchiveIsReading(archive)) PetscFunctionReturn(0);
+  PetscCall(PetscFree(now));
+  if (!reading) PetscFunctionReturn(0);
   if (LamIsFirst(run->comm)) {
-    ierr = CompareScenes(path, text, run->scene->text);
+    ierr = LamCheckSameScene(path, text, files, run->scene);
     PetscCall(PetscFree(text));
+    PetscCall(PetscFree(files));
   }
   PetscCall(LamShareError(run->comm, ierr));
   PetscCheck(response == (int)run->response, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -94,21 +96,18 @@ PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Ti
 /* Rank 0: whether the results are complete. An error if they are of another scene. */
 static PetscErrorCode IsFinished(const LamFE2Run *run, PetscBool *finished)
 {
-  PetscBool has_status, has_scene;
-  char *status = NULL, *scene = NULL;
+  PetscBool has_status;
+  char *status = NULL;
 
   PetscFunctionBeginUser;
   *finished = PETSC_FALSE;
   if (access(run->out_path, F_OK)) PetscFunctionReturn(0);
   PetscCall(LamFileReadText(run->out_path, "/macro/status", &has_status, &status));
-  PetscCall(LamFileReadText(run->out_path, "/scene", &has_scene, &scene));
-  if (has_status && has_scene && !strcmp(status, "done")) {
-    PetscCall(CompareScenes(run->out_path, scene, run->scene->text));
-    *finished = PETSC_TRUE;
-    LamReportNote(&run->reporter, "%s: has all steps; there is nothing left to do", run->out_path);
-  }
+  *finished = (PetscBool)(has_status && !strcmp(status, "done"));
   PetscCall(PetscFree(status));
-  PetscCall(PetscFree(scene));
+  if (!*finished) PetscFunctionReturn(0);
+  PetscCall(LamCheckSameSceneFile(run->out_path, run->scene));
+  LamReportNote(&run->reporter, "%s: has all steps; there is nothing left to do", run->out_path);
   PetscFunctionReturn(0);
 }
 
@@ -168,7 +167,7 @@ static PetscBool CanGoOn(const LamFE2Run *run)
   return (PetscBool)(run->response == LAM_FE2_DIRECT || run->database_path || LamFE2AllHoldModels(run));
 }
 
-static PetscErrorCode SaveNow(LamFE2Run *run)
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run)
 {
   const PetscReal start = LamClock();
   char path[PETSC_MAX_PATH_LEN];
@@ -176,25 +175,13 @@ static PetscErrorCode SaveNow(LamFE2Run *run)
   LamArchive archive;
 
   PetscFunctionBeginUser;
+  if (!run->out_path || !CanGoOn(run)) PetscFunctionReturn(0);
   PetscCall(CheckpointPath(run, path));
   PetscCall(LamArchiveCreate(run->comm, path, &archive));
   ierr = Write(run, archive);
   PetscCall(LamArchiveClose(&archive, (PetscBool)!ierr));
   PetscCall(ierr);
-  run->saved = LamClock();
-  run->save_seconds = run->saved - start;
-  run->all_save_seconds += run->save_seconds;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends)
-{
-  PetscBool due = (PetscBool)(ends || LARGEST_SHARE * (LamClock() - run->saved) >= run->save_seconds);
-
-  PetscFunctionBeginUser;
-  if (!run->out_path || !CanGoOn(run)) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Bcast(&due, 1, MPIU_BOOL, 0, run->comm));
-  if (due) PetscCall(SaveNow(run));
+  run->save_seconds += LamClock() - start;
   PetscFunctionReturn(0);
 }
 
@@ -203,7 +190,7 @@ PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run)
   PetscFunctionBeginUser;
   if (!run->archive && !CanGoOn(run)) PetscCall(LamFE2CheckpointRemove(run)); /* of an earlier run */
   if (!run->archive) {
-    PetscCall(LamFE2CheckpointSave(run, PETSC_TRUE));
+    PetscCall(LamFE2CheckpointSave(run));
     PetscFunctionReturn(0);
   }
   PetscCall(ArchiveSteps(run, run->archive));

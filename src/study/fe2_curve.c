@@ -13,6 +13,16 @@
 static const char *const Names[] = {LAM_CURVE_COLUMNS(NAME_ENTRY)};
 static const char *const Units[] = {LAM_CURVE_COLUMNS(UNIT_ENTRY)};
 
+#define SIDE(unit) "* R1 (" unit ")", "* R2 (" unit ")", "* R? certified (" unit ")", "* R? margin (" unit ")"
+#define HEAD_ENTRY(symbol, name, unit, number) name, name " (*)",
+static const char *const MoreColumns[] = {"* u1 (mm)", "* u2 (mm)", SIDE("N/mm"), SIDE("N"),
+                                          LAM_CURVE_COLUMNS(HEAD_ENTRY) NULL};
+const LamTextKind LamCurveTable = {.what = "a table of lamella fe2 or process",
+                                   .ending = ".csv",
+                                   .begins = "step,load_factor",
+                                   .columns = MoreColumns,
+                                   .ends = ",newton_iterations,cutbacks,queries,hits,solves,failures,seconds (s)"};
+
 LamMacroUnits LamMacroUnitsOf(const LamScene *scene)
 {
   const PetscReal length = scene->scales.macro_length, line = scene->scales.stress * length; /* N/m */
@@ -172,7 +182,7 @@ PetscErrorCode LamCurveWriteCSV(const LamCurve *curve, const char hdf5[])
   LamBeside file;
 
   PetscFunctionBeginUser;
-  PetscCall(LamBesideOpen(hdf5, ".csv", &file));
+  PetscCall(LamBesideOpen(hdf5, &LamCurveTable, &file));
   PrintHeader(file.out, curve);
   for (PetscInt k = 0; k < curve->count; k++) PrintRow(file.out, curve, &curve->rows[k]);
   PetscCall(LamBesideClose(&file));

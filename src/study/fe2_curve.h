@@ -4,7 +4,7 @@
 #ifndef LAM_FE2_CURVE_H
 #define LAM_FE2_CURVE_H
 
-#include <lamella/database.h>
+#include "target.h"
 #include <lamella/macro.h>
 
 /* Units of forces and energies, of a body in plane strain per thickness, and their values in units of the macroscale.
@@ -81,6 +81,7 @@ PetscBool LamCurveHas(const LamCurve *curve, LamCurveColumn column);
 /* Writes /macro/curve/<name> [step] for every column but `step`, and /macro/curve/displacement, reaction and, where
    they are, certified and certified_margin [step][side][2]. */
 PetscErrorCode LamCurveWrite(const LamCurve *curve, LamRecordWriter writer);
+extern const LamTextKind LamCurveTable;
 /* Writes the .csv file beside the HDF5 file: a header line of names with units, then a line per step; NaN is empty. */
 PetscErrorCode LamCurveWriteCSV(const LamCurve *curve, const char hdf5[]);
 

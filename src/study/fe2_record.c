@@ -2,6 +2,7 @@
   The files of a macroscale run, on rank 0: its results, and the database files to which caches add records.
 */
 #include "fe2_run.h"
+#include "xdmf.h"
 
 /* Selects those of n new records of the database that its file lacks, with their keys there; *count of them. */
 static PetscErrorCode ChooseNew(LamFE2Tissue *tissue, PetscInt n, const PetscInt64 in_memory[],
@@ -73,9 +74,30 @@ PetscErrorCode LamFE2CloseTissueFile(LamFE2Tissue *tissue)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CheckTargets(const LamFE2Run *run, PetscBool checkpoint)
+{
+  PetscFunctionBeginUser;
+  if (!run->out_path) PetscFunctionReturn(0);
+  PetscCall(LamTargetCheck(run->out_path, "fe2", run->overwrite, run->scene));
+  PetscCall(LamTargetCheckText(run->out_path, &LamCurveTable, run->overwrite, run->scene));
+  PetscCall(LamTargetCheckText(run->out_path, &LamXDMFText, run->overwrite, run->scene));
+  if (checkpoint) PetscCall(LamFE2CheckpointCheckTarget(run));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LamFE2CheckTargets(const LamFE2Run *run, PetscBool checkpoint)
+{
+  PetscErrorCode ierr = 0;
+
+  PetscFunctionBeginUser;
+  if (LamIsFirst(run->comm)) ierr = CheckTargets(run, checkpoint);
+  PetscCall(LamShareError(run->comm, ierr));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode OpenFiles(LamFE2Run *run)
 {
-  const LamWriteMode mode = run->resumed ? LAM_WRITE_APPEND : LAM_WRITE_CREATE;
+  const LamWriteMode mode = run->resumed ? LAM_WRITE_APPEND : LamTargetMode(run->overwrite);
 
   PetscFunctionBeginUser;
   if (run->out_path) PetscCall(LamFE2FileOpen(run->out_path, mode, run->scene, &run->out));

@@ -11,6 +11,7 @@ PetscErrorCode LamFE2Prepare(LamFE2Run *run, PetscBool *finished)
   *finished = PETSC_FALSE;
   run->start = LamClock();
   if (!run->scene) PetscCall(LamSceneRead(run->scene_path, &run->scene));
+  PetscCall(LamFE2CheckTargets(run, PETSC_TRUE));
   PetscCheck(run->response == LAM_FE2_DIRECT || !LamWallsTear(&run->scene->micro), PETSC_COMM_SELF,
              PETSC_ERR_USER_INPUT,
              "%s: strength.wall_fracture_energy: models of material points do not know cells that burst; choose "
@@ -75,7 +76,7 @@ static PetscErrorCode StepDone(LamMacro macro, const LamMacroStep *step, PetscBo
   PetscCall(LamFE2EndStep(run, step, run->totals.steps + 1, spec->steps + (spec->inflate ? 1 : 0)));
   *stop = LamStopRequested(); /* on any rank: a signal may reach only one */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stop, 1, MPIU_BOOL, MPI_LOR, run->comm));
-  if (step->complete) PetscCall(LamFE2CheckpointSave(run, *stop));
+  if (step->complete) PetscCall(LamFE2CheckpointSave(run));
   PetscFunctionReturn(0);
 }
 

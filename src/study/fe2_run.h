@@ -38,6 +38,7 @@ typedef struct LamFE2Run_s {
   const char *scene_path;    /* read, unless `scene` is given */
   const char *database_path; /* NULL: none */
   const char *out_path;      /* results; NULL: none */
+  PetscBool overwrite;       /* files that Lamella did not write, too */
   PetscBool resume;          /* resume after the last complete step of out_path, if there is one */
   LamCertify certify;        /* which reactions of interpolated responses are corrected by direct solves */
   LamFE2Response response;
@@ -49,11 +50,11 @@ typedef struct LamFE2Run_s {
 
   LamScene *scene;
   LamMacro macro;
-  PetscBool stopped;                               /* stopped before the first step: nothing is written */
-  PetscBool resumed;                               /* resumed from a complete step, which OUT.h5 has */
-  PetscInt resumed_steps;                          /* steps reported by earlier runs */
-  PetscReal saved, save_seconds, all_save_seconds; /* time of the last checkpoint; its duration; duration of all, s */
-  LamArchive archive;                              /* the checkpoint to resume from, until it is read; NULL: none */
+  PetscBool stopped;      /* stopped before the first step: nothing is written */
+  PetscBool resumed;      /* resumed from a complete step, which OUT.h5 has */
+  PetscInt resumed_steps; /* steps reported by earlier runs */
+  PetscReal save_seconds; /* duration of all checkpoints */
+  LamArchive archive;     /* the checkpoint to resume from, until it is read; NULL: none */
   LamFE2Tissues tissues;
   LamResponder heterogeneous; /* responder for several tissues; NULL: not in use */
   LamResponder reference;     /* direct one for several tissues, with `certify`; NULL: not in use */
@@ -128,7 +129,10 @@ PetscErrorCode LamFE2CreateDirect(LamFE2Run *run, LamFE2Tissue *tissue, LamRespo
 /* Corrects the reactions that run->certify selects by direct solves; after LamFE2Connect. */
 PetscErrorCode LamFE2Certify(LamFE2Run *run);
 
-/* ---- fe2_record.c; on rank 0, except LamFE2OpenFiles, which is collective ---- */
+/* ---- fe2_record.c; on rank 0, except the first two, which are collective ---- */
+/* Raises an error if the results, and the checkpoint where there is one, would replace other files, or cannot be
+   written. */
+PetscErrorCode LamFE2CheckTargets(const LamFE2Run *run, PetscBool checkpoint);
 PetscErrorCode LamFE2OpenFiles(LamFE2Run *run);
 /* Adds a step to the summary and the results, and the cache's new records to the database file. */
 PetscErrorCode LamFE2RecordStep(LamFE2Run *run, const LamMacroStep *step, const LamMacroFields *fields);
@@ -150,9 +154,10 @@ PetscErrorCode LamFE2CheckpointRows(LamFE2Run *run, LamArchive archive, LamFE2Ti
 /* Restores the checkpoint that was found, once responder and files exist; else writes a first OUT.h5.ckpt, so that
    responses after a resume do not depend on records that other runs add to the database meanwhile. */
 PetscErrorCode LamFE2CheckpointStart(LamFE2Run *run);
-/* Called after a complete step is in the files. Writes a checkpoint if the run ends, or if one is due: checkpoints take
-   at most 2 % of the time. */
-PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run, PetscBool ends);
+/* Raises an error if another file has the checkpoint's name. */
+PetscErrorCode LamFE2CheckpointCheckTarget(const LamFE2Run *run);
+/* Called after a complete step is in the files. */
+PetscErrorCode LamFE2CheckpointSave(LamFE2Run *run);
 PetscErrorCode LamFE2CheckpointRemove(LamFE2Run *run);
 
 /* ---- fe2_zoom.c ---- */

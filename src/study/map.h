@@ -14,6 +14,7 @@
 
 #include "dispatch.h"
 #include "failure.h"
+#include "target.h"
 
 /* Result at one point. Plain data, sent between ranks. */
 typedef struct {
@@ -64,7 +65,8 @@ PetscErrorCode LamMapAxesWrite(LamRecordWriter writer, const LamScene *scene);
 
 typedef struct LamMap_s {
   const char *scene_path, *path;
-  PetscBool resume; /* continue an existing file */
+  PetscBool overwrite; /* files that Lamella did not write, too */
+  PetscBool resume;    /* continue an existing file */
   LamReporter reporter;
   /* Called for each point once it is in the file, on rank 0; ctx: the reporter's. May be NULL. */
   PetscErrorCode (*point)(void *ctx, const struct LamMap_s *map, const LamMapPoint *point);

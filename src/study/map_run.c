@@ -90,22 +90,6 @@ static PetscErrorCode Follow(void *ctx, PetscInt64 index, const void *input, siz
 
 /* ---- resuming ---- */
 
-/* The file must belong to the same scene: another scene gives another map. */
-static PetscErrorCode CheckScene(const LamMap *m)
-{
-  PetscBool found, same;
-  char *text;
-
-  PetscFunctionBeginUser;
-  PetscCall(LamFileReadText(m->path, "/scene", &found, &text));
-  same = (PetscBool)(found && !strcmp(text, m->scene->text));
-  PetscCall(PetscFree(text));
-  PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: was begun with another scene than %s; --resume needs the same, to the letter", m->path,
-             m->scene_path);
-  PetscFunctionReturn(0);
-}
-
 /* The points of a path are committed together, so the first one represents all. */
 static PetscErrorCode FindTodo(LamMap *m)
 {
@@ -137,13 +121,14 @@ static PetscErrorCode OpenWriter(LamMap *m)
   LamScene described = *m->scene;
 
   PetscFunctionBeginUser;
+  if (!m->resume) PetscCall(LamTargetCheck(m->path, "map", m->overwrite, m->scene));
   PetscCall(LamChooseMesh(&described, NULL));
   PetscCall(LamWarnOfDigits(PETSC_COMM_WORLD, &m->reporter, &described.micro, m->scene->accuracy));
   LamWarnOfTurgor(&m->reporter, m->scene);
   PetscCall(PetscMalloc1(LamMapPointCount(m->scene), &m->waiting));
-  PetscCall(
-      LamRecordWriterOpen(m->path, "map", m->resume ? LAM_WRITE_APPEND : LAM_WRITE_CREATE, &described, &m->writer));
-  if (goes_on) PetscCall(CheckScene(m));
+  PetscCall(LamRecordWriterOpen(m->path, "map", m->resume ? LAM_WRITE_APPEND : LamTargetMode(m->overwrite), &described,
+                                &m->writer));
+  if (goes_on) PetscCall(LamCheckSameSceneFile(m->path, m->scene));
   PetscCall(FindTodo(m));
   PetscFunctionReturn(0);
 }

@@ -91,6 +91,7 @@ PetscErrorCode LamBodyStudyPrepare(LamBodyStudy *study)
   PetscFunctionBeginUser;
   fe2->start = LamClock();
   fe2->step = ReportState;
+  PetscCall(LamFE2CheckTargets(fe2, PETSC_FALSE));
   PetscCall(LamMacroCreate(fe2->comm, &fe2->macro));
   PetscCall(LamMacroSetScene(fe2->macro, fe2->scene));
   PetscCall(LamBodyCreate(fe2->scene, fe2->macro, &study->body));

@@ -184,7 +184,8 @@ static PetscErrorCode Follow(LamProcessStudy *study)
 
   PetscFunctionBeginUser;
   if (study->out_path)
-    PetscCall(LamRecordWriterOpen(study->out_path, "process", LAM_WRITE_CREATE, study->scene, &study->writer));
+    PetscCall(LamRecordWriterOpen(study->out_path, "process", LamTargetMode(study->response.overwrite), study->scene,
+                                  &study->writer));
   study->last_commit = LamClock();
   LamActivitySet("time, %%");
   PetscCall(LamReportProgress(&study->response.reporter, 0, LAM_PROCESS_PARTS, 0));
@@ -207,6 +208,10 @@ static PetscErrorCode Solve(LamProcessStudy *study)
   PetscFunctionBeginUser;
   study->reason = LAM_PROCESS_STOPPED;
   study->start = LamClock();
+  if (study->out_path) {
+    PetscCall(LamTargetCheck(study->out_path, "process", study->response.overwrite, study->scene));
+    PetscCall(LamTargetCheckText(study->out_path, &LamProcessTable, study->response.overwrite, study->scene));
+  }
   PetscCall(LamProcessCreate(study->scene, &study->process));
   PetscCall(Connect(study, &responder));
   if (study->response.stopped) PetscFunctionReturn(0);

@@ -25,6 +25,7 @@ typedef struct {
 
 /* ---- process_states.c ---- */
 PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *scene, const LamProcessHistory *history);
+extern const LamTextKind LamProcessTable;
 /* The same as a table for spreadsheets, beside the HDF5 file: .csv; F from the inflated tissue, and P. */
 PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *history);
 PetscErrorCode LamBodyHistoryWrite(LamRecordWriter writer, void *history); /* a LamBodyHistory */

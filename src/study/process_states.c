@@ -115,6 +115,14 @@ PetscErrorCode LamProcessHistoryWrite(LamRecordWriter writer, const LamScene *sc
   PetscFunctionReturn(0);
 }
 
+static const char *const NoMore[] = {NULL};
+const LamTextKind LamProcessTable = {
+    .what = "a table of lamella process",
+    .ending = ".csv",
+    .begins = "state,event,time (s),temperature (K),turgor (MPa),cohesion (MPa),osmotic_pressure (MPa),outside (MPa),"
+              "firmness (MPa),water,walls,F11,F12,F21,F22,F33,P11 (MPa),P12 (MPa),P21 (MPa),P22 (MPa),P33 (MPa)",
+    .columns = NoMore};
+
 PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scene, const LamProcessHistory *h)
 {
   static const int plane[] = {0, 1, 3, 4, 8};
@@ -124,13 +132,8 @@ PetscErrorCode LamProcessHistoryWriteCSV(const char hdf5[], const LamScene *scen
 
   PetscFunctionBeginUser;
   PointColumns(scene, columns);
-  PetscCall(LamBesideOpen(hdf5, ".csv", &file));
-  fputs("state,event", file.out);
-  for (int c = 0; c < POINT_COLUMNS; c++)
-    fprintf(file.out, strcmp(columns[c].unit, "1") ? ",%s (%s)" : ",%s", columns[c].name, columns[c].unit);
-  for (int k = 0; k < 5; k++) fprintf(file.out, ",F%d%d", plane[k] / 3 + 1, plane[k] % 3 + 1);
-  for (int k = 0; k < 5; k++) fprintf(file.out, ",P%d%d (MPa)", plane[k] / 3 + 1, plane[k] % 3 + 1);
-  fputc('\n', file.out);
+  PetscCall(LamBesideOpen(hdf5, &LamProcessTable, &file));
+  fprintf(file.out, "%s\n", LamProcessTable.begins); /* the columns, F and P */
   for (PetscInt n = 0; n < h->count; n++) {
     const LamProcessState *state = &h->states[n];
     PetscReal F[9], P[9];

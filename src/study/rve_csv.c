@@ -53,7 +53,16 @@
   X("energy (kJ/m^3)", (p->energy) * MPa * 1e3)
 
 #define PRINT_NAME(name, value) fputs("," name, out);
+#define COMMA_NAME(name, value) "," name
+#define NAME(name, value) name,
 #define PRINT_VALUE(name, value) LamBesideNumber(out, value);
+
+static const char *const MoreColumns[] = {LAMELLA_COLUMNS(NAME) MEMORY_COLUMNS(NAME) CRACK_COLUMNS(NAME)
+                                              CURVE_COLUMNS(NAME) NULL};
+const LamTextKind LamRVETable = {.what = "a table of lamella rve",
+                                 .ending = ".csv",
+                                 .begins = "state,status" COLUMNS(COMMA_NAME),
+                                 .columns = MoreColumns};
 
 static PetscBool HasLamella(const LamRVERun *run)
 {
@@ -65,10 +74,9 @@ PetscErrorCode LamRVECSVOpen(LamRVERun *run)
   FILE *out;
 
   PetscFunctionBeginUser;
-  PetscCall(LamBesideOpen(run->out_path, ".csv", &run->csv));
+  PetscCall(LamBesideOpen(run->out_path, &LamRVETable, &run->csv));
   out = run->csv.out;
-  fputs("state,status", out);
-  COLUMNS(PRINT_NAME)
+  fputs(LamRVETable.begins, out);
   if (HasLamella(run)) {
     LAMELLA_COLUMNS(PRINT_NAME)
   }

@@ -40,12 +40,24 @@ static LamWanted Wanted(const LamRVERun *run)
   return wanted | LAM_WANT_JUMPS;
 }
 
+/* What the files of -o would replace. */
+static PetscErrorCode CheckTargets(const LamRVERun *run)
+{
+  PetscFunctionBeginUser;
+  if (!run->out_path) PetscFunctionReturn(0);
+  PetscCall(LamTargetCheck(run->out_path, "rve", run->overwrite, run->scene));
+  PetscCall(LamTargetCheckText(run->out_path, &LamRVETable, run->overwrite, run->scene));
+  PetscCall(LamTargetCheckText(run->out_path, &LamXDMFText, run->overwrite, run->scene));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LamRVERunPrepare(LamRVERun *run)
 {
   const PetscBool contact = LamCellsPart(run->scene->micro.interface);
   LamPlan plan;
 
   PetscFunctionBeginUser;
+  PetscCall(CheckTargets(run));
   if (run->scene->inflate) run->readings = PETSC_TRUE;
   if (run->scene->dissipating) {
     PetscCheck(!run->second_mesh && !run->find_onset && !run->find_failure && !run->global, PETSC_COMM_SELF,
@@ -312,7 +324,7 @@ PetscErrorCode LamRVERunSolve(LamRVERun *run)
 
   PetscFunctionBeginUser;
   if (run->out_path) {
-    PetscCall(LamRecordWriterOpen(run->out_path, "rve", LAM_WRITE_CREATE, run->scene, &run->writer));
+    PetscCall(LamRecordWriterOpen(run->out_path, "rve", LamTargetMode(run->overwrite), run->scene, &run->writer));
     ierr = LamRVEWriteMesh(run->writer, "/mesh", run->meshes.rve[0]);
     if (!ierr) ierr = LamRVECSVOpen(run);
     if (!ierr) ierr = LamXDMFOpen(run->out_path, "states", &run->xdmf);

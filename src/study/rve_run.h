@@ -21,6 +21,7 @@
 typedef struct LamRVERun_s {
   /* options; all borrowed */
   const char *out_path;               /* states and fields; NULL: none */
+  PetscBool overwrite;                /* files that Lamella did not write, too */
   PetscBool derivatives, walls;       /* wanted of each state, in addition to what the file and the studies need */
   PetscBool find_onset, find_failure; /* of contact tissue on two meshes */
   PetscBool second_mesh;              /* of contact tissue */
@@ -64,6 +65,7 @@ PetscErrorCode LamRVERunDestroy(LamRVERun *run);
 const LamStressControl *LamRVERunControl(const LamRVERun *run, PetscInt number);
 
 /* ---- rve_csv.c ---- */
+extern const LamTextKind LamRVETable;
 PetscErrorCode LamRVECSVOpen(LamRVERun *run);
 /* A line for the state just solved. */
 void LamRVECSVAdd(LamRVERun *run, const LamResponse *response);

@@ -34,6 +34,13 @@ PetscErrorCode LamPeakMemory(MPI_Comm comm, PetscReal *megabytes);
 PetscErrorCode LamRefuseHistory(const char path[], const LamMicrostructure *micro, const char what[],
                                 const char remedy[]);
 
+/* PETSC_ERR_USER_INPUT, with the first line or the file that differs, unless the scene is the one with which the file
+   `path` was begun: its text, and what it said of the files that it names (LamSceneDescribeFiles; NULL: nothing). */
+PetscErrorCode LamCheckSameScene(const char path[], const char before[], const char files_before[],
+                                 const LamScene *scene);
+/* The same of an HDF5 file, which holds both. */
+PetscErrorCode LamCheckSameSceneFile(const char path[], const LamScene *scene);
+
 /* An RVE of the scene, whose mesh is chosen, set up; comm as for LamRVECreate. */
 PetscErrorCode LamSceneRVECreate(MPI_Comm comm, const LamScene *scene, LamRVE *rve);
 /* Makes room for one more item of `size` bytes in a list of `count`; items: address of the owned pointer. */

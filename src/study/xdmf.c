@@ -4,13 +4,17 @@
 #include "xdmf.h"
 #include <string.h>
 
+#define HEAD "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\""
+#define COLLECTION "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n"
+const LamTextKind LamXDMFText = {
+    .what = "an XDMF file of lamella", .ending = ".xdmf", .begins = HEAD "*" COLLECTION "*"};
+
 PetscErrorCode LamXDMFOpen(const char hdf5[], const char collection[], LamXDMF *xdmf)
 {
   PetscFunctionBeginUser;
   xdmf->hdf5 = hdf5;
-  PetscCall(LamBesideOpen(hdf5, ".xdmf", &xdmf->file));
-  fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n", xdmf->file.out);
-  fprintf(xdmf->file.out, "    <Grid Name=\"%s\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", collection);
+  PetscCall(LamBesideOpen(hdf5, &LamXDMFText, &xdmf->file));
+  fprintf(xdmf->file.out, HEAD "%s" COLLECTION, collection);
   PetscFunctionReturn(0);
 }
 

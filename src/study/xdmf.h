@@ -24,6 +24,7 @@ typedef struct {
   PetscInt rows, columns;
 } LamXDMFData;
 
+extern const LamTextKind LamXDMFText;
 /* Writes OUT.xdmf beside OUT.h5; it appears when it is closed. It names the HDF5 file without its folder, so that both
    can be moved together. */
 PetscErrorCode LamXDMFOpen(const char hdf5[], const char collection[], LamXDMF *xdmf);

@@ -170,9 +170,9 @@ bad 2 'db.h5: is an HDF5 file, no scene; `lamella info` says' check db.h5
 bad 2 'empty.yaml:1:1: the file holds no scene; a scene starts with version: 1' check empty.yaml
 bad 2 'rve.yaml: is not an HDF5 file; a file written by lamella' info rve.yaml
 bad 2 'fig.jpg: a picture.s name must end in .png, .svg or .pdf' plot db.h5 -o fig.jpg
-bad 2 'rve.yaml: exists and is not a file of lamella' rve rve.yaml --json -o rve.yaml
+bad 1 'rve.yaml: an HDF5 file is written there; name it rve.h5' rve rve.yaml --json -o rve.yaml
 bad 2 'db.h5: exists and is of kind "database"' rve rve.yaml --json -o db.h5
-bad 4 'none/out.h5: cannot make the lock none/out.h5.lock: No such file or directory; make the folder first' rve rve.yaml --json -o none/out.h5
+bad 4 'none/out.h5: cannot be made: No such file or directory; make the folder first' rve rve.yaml --json -o none/out.h5
 bad 2 'db.h5: exists; give --resume to go on with it, or remove it' build build.yaml -d db.h5
 bad 2 '--state 9: steps.h5 holds' plot steps.h5 --state 9
 bad 2 'steps.h5: is of kind "fe2"; only databases are merged' merge all.h5 steps.h5 db.h5

@@ -159,5 +159,5 @@ expect 2 -e "--cells 8;9: numbers of cells" "$lamella" rve scene.yaml --realisat
 expect 1 -e "a whole number from 2 on" "$lamella" rve scene.yaml --realisations 1
 expect 1 -e "--cells is of --realisations" "$lamella" rve scene.yaml --cells 8
 expect 1 -e "--onset does not go with --realisations" "$lamella" rve scene.yaml --realisations 2 --onset
-expect 4 -e "no/such: cannot be made" "$lamella" rve scene.yaml --realisations 2 -o no/such
+expect 4 -e "scene.yaml/no: cannot be made" "$lamella" rve scene.yaml --realisations 2 -o scene.yaml/no
 [ ! -e realisations ] || fail "refused, but a folder was made"

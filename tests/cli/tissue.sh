@@ -124,7 +124,7 @@ expect 2 -e "--size 150.*has no unit" "$lamella" tissue -o a.json --cells 20 --s
 expect 2 -e "--direction 30.*unit" "$lamella" $made -o a.json --cells 20 --direction 30
 expect 2 -e "--wall-thickness 90 um" "$lamella" tissue -o a.json --cells 20 --size 150um --wall-thickness 90um
 expect 2 -e "thinner walls" "$lamella" tissue -o a.json --cells 20 --size 150um --wall-thickness 60um
-expect 4 -e "no/such/a.json: cannot write the tissue" "$lamella" $made -o no/such/a.json --cells 8
+expect 4 -e "no/such/a.json: cannot be made: make the folder first" "$lamella" $made -o no/such/a.json --cells 8
 [ ! -e a.json ] || fail "a refused tissue was written"
 LAMELLA_PYTHON=/no/python expect 4 -e "tissue needs Python 3 with the package scipy" "$lamella" $made -o a.json --cells 8
 

@@ -12,6 +12,7 @@ import numpy as np
 from .. import InputError, quantity
 from .._served import USAGE, progress as shown, served
 from ..tissue import Tissue
+from ..tissue.file import output
 from . import borders, picture as pictures
 from .walls import Walls
 
@@ -43,6 +44,8 @@ def _parser() -> argparse.ArgumentParser:
                    help="of the mean face: shorter faces become points (default: those that the solver refuses)")
     p.add_argument("--pieces", choices=("largest", "refuse"), default="largest", help="of a label of several pieces")
     p.add_argument("--crop", metavar="LEFT,TOP,RIGHT,BOTTOM", help="pixels from the upper left corner")
+    p.add_argument("--overwrite", action="store_true",
+                   help="replace a file that is no tissue of Lamella, too; never the picture")
     p.add_argument("--json", action="store_true", help="an object in place of the table")
     return p
 
@@ -190,10 +193,11 @@ def table(tissue: Tissue, report: dict[str, Any]) -> list[str]:
 
 
 def run(told: argparse.Namespace) -> None:
+    output(told.output, told.overwrite, [told.labels])
     ended = shown("finds the cells and their walls")
     tissue, report = convert(told)
     ended(1, 1)
-    tissue.write(told.output)
+    tissue.write(told.output, told.overwrite)
     if told.json:
         print(json.dumps({"file": told.output, **report, "pixels": list(report["pixels"]), "got": tissue.statistics()}))
     else:

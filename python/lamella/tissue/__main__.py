@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import InputError, quantity
 from .._served import progress as shown, served
+from . import file
 from .make import Asked, make
 from .report import table
 
@@ -46,10 +47,12 @@ def asked_of(request: dict[str, Any]) -> Asked:
 
 def run(request: dict[str, Any]) -> None:
     """Makes the tissue, writes it, and tells what it is."""
+    asked, output, overwrite = asked_of(request), request["output"], request.get("overwrite", False)
+    file.output(output, overwrite)
     ended = shown("makes the tissue")
-    tissue, output = make(asked_of(request)), request["output"]
+    tissue = make(asked)
     ended(1, 1)
-    tissue.write(output)
+    tissue.write(output, overwrite)
     if request.get("json"):
         print(json.dumps({"file": output, "asked": tissue.made_by["asked"], "got": tissue.made_by["got"]}))
     else:

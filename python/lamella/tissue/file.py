@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from .. import InputError, quantity, parse_yaml
+from .._files import may_write, with_member, write_whole
 from . import geometry
 
 VERSION = 1
@@ -142,16 +143,10 @@ class Tissue:
         """InputError unless the tissue is what a file may hold: what is wrong, at which cell or vertex."""
         geometry.check(self)
 
-    def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes a file, whole or not at all; coordinates have 12 digits."""
-        path = Path(path)
-        aside = path.with_name(f".{path.name}.{os.getpid()}")
-        try:
-            aside.write_text(self.text(), encoding="utf-8")
-            os.replace(aside, path)
-        except OSError as error:
-            aside.unlink(missing_ok=True)
-            raise OSError(f"{path}: cannot write the tissue: {error.strerror or error}") from None
+    def write(self, path: str | os.PathLike[str], overwrite: bool = False) -> None:
+        """Writes a file, whole or not at all; coordinates have 12 digits. InputError: it would replace a file that is
+        no tissue, without overwrite."""
+        write_whole(output(path, overwrite), self.text())
 
     def text(self) -> str:
         """What a file of it holds."""
@@ -174,6 +169,11 @@ class Tissue:
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
         return tissue
+
+
+def output(path: str | os.PathLike[str], overwrite: bool = False, inputs: Sequence[str] = ()) -> Path:
+    """The path, to which a tissue may be written (_files.may_write)."""
+    return may_write(path, with_member("lamella_tissue"), "a tissue", overwrite, inputs)
 
 
 def _plain(value: Any) -> Any:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from .. import Error, InputError, Scene, parallel, program, scene_dict
-from .._files import write_whole
+from .._files import inputs_of, make_folder, may_write, write_whole
 from .._served import end_with_program, progress as shown, served
 from . import realised, scatter
 from .file import Tissue
@@ -86,15 +86,14 @@ class Plan:
         """Whether it is asked how the tissue fails."""
         return "strength" in self.scene or (self.scene["rve"].get("interface") or {}).get("law") == "lamella"
 
-    def settle(self) -> None:
-        """Makes the folder. InputError: it has realisations of something else."""
+    def settle(self, jobs: Sequence["Job"], overwrite: bool, inputs: Sequence[str]) -> None:
+        """Takes the folder. InputError: it has realisations of something else, or other files of their names."""
         told = {"asked": dataclasses.asdict(dataclasses.replace(self.asked, cells=0, seed=0)), "scene": self.scene}
         file = self.folder / "scene.json"
-        try:
-            self.folder.mkdir(exist_ok=True)
-        except OSError as error:
-            raise OSError(f"{self.folder}: cannot be made: {error.strerror or error}") from None
         if not file.exists():
+            names = [job.file(self, ending) for job in jobs for ending in ("json", "yaml", "rest.yaml", "states.json")]
+            for path in (file, self.folder / "realisations.json", *names):
+                may_write(path, lambda _: False, "of these realisations", overwrite, inputs)
             write_whole(file, json.dumps(told, indent=2) + "\n")
         elif _read(file) != told:
             raise InputError(f"{self.folder}: has realisations of another scene or tissue: give another folder by -o, "
@@ -174,14 +173,15 @@ def _solve_all(plan: Plan, jobs: list[Job], processes: int,
 
 
 def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[int] | None = None,
-            processes: int | None = None, output: str | os.PathLike[str] = "realisations",
+            processes: int | None = None, output: str | os.PathLike[str] = "realisations", overwrite: bool = False,
             progress: Callable[[int, int], None] = lambda done, total: None) -> Object:
     """Makes so many tissues of each number of cells like that of the scene, solves its load for each, and returns what
     is told of them, the object of `--json` (docs/reference/realisations.md), which is also in realisations.json.
 
     cells: default: as many as the scene's tissue has; processes: at a time, default the number of processors; output:
-    the folder of all files; progress(done, total) is called after each. InputError: the scene's tissue was not made by
-    `lamella tissue`, or none of the realisations could be solved.
+    the folder of all files; overwrite: files of their names that are of no realisation are replaced; progress(done,
+    total) is called after each. InputError: the scene's tissue was not made by `lamella tissue`, or none of the
+    realisations could be solved.
     """
     path = os.fspath(scene)
     if not len(Scene(path)):
@@ -193,9 +193,9 @@ def realise(scene: str | os.PathLike[str], realisations: int, cells: Sequence[in
             raise InputError(f"--cells {n}: {scatter.LEAST} to {scatter.MOST} are wanted")
     if not 2 <= realisations < NUMBERS:
         raise InputError(f"--realisations {realisations}: 2 to {NUMBERS - 1} are wanted")
-    plan = Plan(asked, _base(path, asked), Path(output))
-    plan.settle()
+    plan = Plan(asked, _base(path, asked), make_folder(output))
     jobs = [Job(n, k) for n in sizes for k in range(1, realisations + 1)]
+    plan.settle(jobs, overwrite, inputs_of(path))
     solved = _solve_all(plan, jobs, parallel.count(processes), progress)
     if all(isinstance(told, str) for told in solved.values()):
         raise InputError(f"none of {len(jobs)} realisations could be solved; the first one: {solved[jobs[0]]}")
@@ -218,7 +218,7 @@ def run(request: Object) -> int:
     folder = request["output"]
     try:
         told = realise(request["scene"], request["realisations"], _cells(request.get("cells")),
-                       request.get("processes"), folder,
+                       request.get("processes"), folder, request.get("overwrite", False),
                        (lambda done, total: None) if request.get("quiet") else shown("realisations"))
     except KeyboardInterrupt:
         print(f"lamella rve: stopped: the same command goes on with what is in {folder}", file=sys.stderr)

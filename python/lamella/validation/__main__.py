@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from .. import InputError
-from .._files import make_folder, write_whole
+from .._files import beginning, make_folder, may_write, write_whole
 from .._served import end_with_program, progress as shown, served
 from . import Experiment, experiments
-from .page import counts, misses, number, page, summary
+from .page import TITLE, WHAT, counts, misses, number, page, summary
 
 
 def _told(e: Experiment) -> dict[str, Any]:
@@ -45,6 +45,10 @@ def run(request: dict[str, Any]) -> None:
     for name in names:
         if name not in of:
             raise InputError(f"--only {name}: there is no such experiment; there are {', '.join(of)}")
+    if request.get("output"):
+        may_write(make_folder(request["output"]) / "validation.md", beginning(f"{TITLE}\n\n{WHAT}"),
+                  "the page of lamella validate", request.get("overwrite", False))
+        import_module("lamella.plot")  # what it needs may be missing
     told = []
     for k, name in enumerate(names):
         start, ended = time.monotonic(), shown(f"experiment {k + 1} of {len(names)}, {name}")
@@ -64,7 +68,7 @@ def run(request: dict[str, Any]) -> None:
 
 def _write(folder: Path, told: list[Experiment], silent: bool) -> None:
     plot, picture = (import_module(f"lamella.plot{part}") for part in ("", ".validation"))
-    write_whole(make_folder(folder) / "validation.md", page(told))
+    write_whole(folder / "validation.md", page(told))
     plot.save(picture.draw(told), str(folder / "validation.png"), 200)
     if not silent:
         print(f"wrote {folder / 'validation.md'} and {folder / 'validation.png'}", flush=True)

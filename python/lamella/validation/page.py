@@ -3,6 +3,7 @@ from collections.abc import Sequence
 
 from . import Experiment, Mode, Row
 
+TITLE, WHAT = "# Against measurements", "What was published of fruit and vegetables, and what Lamella finds for it."
 MEANS = {True: "yes", False: "**no**"}
 
 
@@ -68,10 +69,10 @@ def misses(told: Sequence[Experiment]) -> list[tuple[Experiment, Row]]:
 def page(told: Sequence[Experiment]) -> str:
     """Markdown."""
     lines = [
-        "# Against measurements", "",
-        "What was published of fruit and vegetables, and what Lamella finds for it. `lamella validate` solves all of "
-        "it anew and writes this page. Figures are as abstracts and open pages give them; nothing was measured for "
-        "this program. Each experiment says what was chosen or fitted; all else was predicted.", "",
+        TITLE, "",
+        f"{WHAT} `lamella validate` solves all of it anew and writes this page. Figures are as abstracts and open pages "
+        "give them; nothing was measured for this program. Each experiment says what was chosen or fitted; all else "
+        "was predicted.", "",
         "An interval behind a prediction holds 95 % of 40 samples of what is not known of the tissue (walls, sizes "
         "of cells: [tissues](tissues.md)); of a mean over tissues it is that of the mean. A figure agrees (*yes*) "
         "where the predicted value was measured, and *by its interval* where that and the measured one have values in "

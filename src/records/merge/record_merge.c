@@ -7,6 +7,7 @@
   synced. Salvage reads damaged files chunk by chunk and keeps the records with a correct checksum.
 */
 #include "record_merge.h"
+#include "target.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
