@@ -57,7 +57,7 @@ expect 3 -o '"failure": {"mode": "unknown", "reason": "' "$lamella" map u.yaml -
 expect 1 "$lamella" map s.yaml
 sed '/^map/,$d' s.yaml >no.yaml
 expect 2 -e 'no block `map`' "$lamella" map no.yaml -o no.h5
-expect 2 "$lamella" map s.yaml -o s.yaml
+expect 1 "$lamella" map s.yaml -o s.yaml
 expect 2 -e 'another scene' "$lamella" map t.yaml -o a.h5 --resume
 expect 2 "$lamella" query a.h5 -F "1 0 0 1"
 
