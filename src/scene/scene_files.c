@@ -5,7 +5,6 @@
 #include "scene_keys.h"
 #include "hash.h"
 #include <stdio.h>
-#include <string.h>
 
 /* Empty if the file cannot be read: whoever needs it says so. */
 static void HashFile(const char path[], char hash[LAM_HASH_LENGTH])
@@ -44,18 +43,6 @@ PetscErrorCode LamSceneBuildFiles(const LamNode *root, LamScene *scene)
 {
   PetscFunctionBeginUser;
   PetscCall(AddFiles(root, scene));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode LamSceneDescribeFiles(const LamScene *scene, char **text)
-{
-  size_t length = 1, used = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < scene->file_count; k++) length += LAM_HASH_LENGTH + 2 + strlen(scene->files[k].name);
-  PetscCall(PetscCalloc1(length, text));
-  for (PetscInt k = 0; k < scene->file_count; k++)
-    used += (size_t)snprintf(*text + used, length - used, "%s %s\n", scene->files[k].hash, scene->files[k].name);
   PetscFunctionReturn(0);
 }
 

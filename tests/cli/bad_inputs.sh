@@ -170,7 +170,7 @@ bad 2 'db.h5: is an HDF5 file, no scene; `lamella info` says' check db.h5
 bad 2 'empty.yaml:1:1: the file holds no scene; a scene starts with version: 1' check empty.yaml
 bad 2 'rve.yaml: is not an HDF5 file; a file written by lamella' info rve.yaml
 bad 2 'fig.jpg: a picture.s name must end in .png, .svg or .pdf' plot db.h5 -o fig.jpg
-bad 1 'rve.yaml: an HDF5 file is written there; name it rve.h5' rve rve.yaml --json -o rve.yaml
+bad 1 '-o rve.yaml: an HDF5 file is written there; name it rve.h5' rve rve.yaml --json -o rve.yaml
 bad 2 'db.h5: exists and is of kind "database"' rve rve.yaml --json -o db.h5
 bad 4 'none/out.h5: cannot be made: No such file or directory; make the folder first' rve rve.yaml --json -o none/out.h5
 bad 2 'db.h5: exists; give --resume to go on with it, or remove it' build build.yaml -d db.h5
@@ -208,7 +208,7 @@ count=$((count + 2))
 # interrupted SCENE EDIT WORDS COMMAND [OPTION...]: how to go on
 interrupted() {
   edited "$1" "$2"
-  rm -f long.h5 long.jsonl
+  rm -f long.*
   "$lamella" "$4" bad.yaml --json "${@:5}" >long.jsonl 2>err.txt &
   pid=$!
   until [ -s long.jsonl ] || ! kill -0 $pid 2>/dev/null; do sleep 0.05; done

@@ -258,5 +258,5 @@ expect 2 -e "label 5 lies around all others" $cells around.npy -o tissue.json --
 expect 2 -e "lossy.jpg: is a JPEG file, which changes labels" $cells lossy.jpg -o tissue.json --pixel "1 um"
 expect 2 -e "broken.tif: is no picture that can be read" $cells broken.tif -o tissue.json --pixel "1 um"
 expect 4 -e "none.tif: cannot be read: No such file" $cells none.tif -o tissue.json --pixel "1 um"
-expect 4 -e "no/tissue.json: cannot write" $cells cells.tif -o no/tissue.json --wall-thickness "0.5 um"
+expect 4 -e "no/tissue.json: cannot be made: make the folder first" $cells cells.tif -o no/tissue.json --wall-thickness "0.5 um"
 [ ! -e tissue.json ] || fail "a refused picture has left a file"

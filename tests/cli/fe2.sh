@@ -69,13 +69,13 @@ PYTHON
   grep -q grid err.txt && fail "a grid is added twice"
 fi
 
-# an error on the way (a folder is where OUT.xdmf belongs) closes the files: the cache's solves are kept, no lock is left
-mkdir error.xdmf
+# an error on the way (a folder is where OUT.xdmf is written first) closes the files: the cache's solves are kept, no lock is left
+mkdir error.xdmf.tmp
 expect 4 -e 'error.xdmf' "$lamella" fe2 small.yaml -d kept.h5 -o error.h5
-[ -z "$(ls -A | grep -E 'lock|tmp' || true)" ] || fail "an error leaves $(ls -A | grep -E 'lock|tmp')"
+[ -z "$(ls -A | grep -E 'lock|h5.tmp' || true)" ] || fail "an error leaves $(ls -A | grep -E 'lock|h5.tmp')"
 "$lamella" info error.h5 >/dev/null || fail "error.h5 cannot be read"
 "$lamella" info kept.h5 --json | grep -q '"records": *[1-9]' || fail "an error loses what the cache solved: $("$lamella" info kept.h5 --json)"
-rm -rf error.xdmf
+rm -rf error.xdmf.tmp
 
 # a database that cannot be written to: the results' lock is given back, and the file that was there stays
 cp small.h5 before.h5
