@@ -121,7 +121,7 @@ expect 1 -e "one argument too many" "$lamella" $made -o a.json --cells 20 more
 expect 2 -e "--variation 0.7: 0 to 0.5 is wanted" "$lamella" $made -o a.json --cells 20 --variation 0.7
 expect 2 -e "--gas much: a number is wanted" "$lamella" $made -o a.json --cells 20 --gas much
 expect 2 -e "--size 150.*has no unit" "$lamella" tissue -o a.json --cells 20 --size 150
-expect 2 -e "--direction 30.*unit" "$lamella" $made -o a.json --cells 20 --direction 30
+expect 2 -e "--direction 30.*unit" "$lamella" $made -o a.json --cells 20 --elongation 1.5 --direction 30
 expect 2 -e "--wall-thickness 90 um" "$lamella" tissue -o a.json --cells 20 --size 150um --wall-thickness 90um
 expect 2 -e "thinner walls" "$lamella" tissue -o a.json --cells 20 --size 150um --wall-thickness 60um
 expect 4 -e "no/such/a.json: cannot be made: make the folder first" "$lamella" $made -o no/such/a.json --cells 8
