@@ -52,6 +52,14 @@ LAM_EXPORT PetscInt LamCellAcross(const LamMicrostructure *micro, PetscInt cell,
 LAM_EXPORT PetscInt LamCellDirection(const LamMicrostructure *micro, PetscInt cell, PetscInt k);
 
 /*
+  Whether lumens under the load's turgor (contact: and gaps under its cohesion) fill all that the walls leave. Then
+  turgor acts through -p J alone, but for the walls' compression (docs/theory/homogenisation.md, Effective-stress
+  principle). Not so with air at junctions or in place of cells, or where the turgor or cohesion of cells differs from
+  the load's.
+*/
+LAM_EXPORT PetscErrorCode LamFluidFills(const LamMicrostructure *micro, PetscBool *fills);
+
+/*
   The motions that map a periodic tissue, with all that its cells have, onto itself, within 1e-9 apothems: has[0][k],
   rotations by 60 k degrees; has[1][k], a mirror at the line along face normal 0, and then that rotation. A patch has
   the identity alone.

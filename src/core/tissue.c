@@ -183,6 +183,25 @@ PetscReal LamTissueCellArea(LamTissue tissue, PetscInt cell)
   return sum;
 }
 
+#define ALL 1e-9 /* of the area: tissue files have 12 digits */
+
+PetscErrorCode LamFluidFills(const LamMicrostructure *micro, PetscBool *fills)
+{
+  PetscReal cells = 0.0;
+  LamTissue tissue;
+
+  PetscFunctionBeginUser;
+  PetscCall(LamTissueCreate(micro, &tissue));
+  for (PetscInt c = 0; c < tissue->cells; c++) cells += LamTissueCellArea(tissue, c);
+  *fills = (PetscBool)(fabs(cells - tissue->area) <= ALL * tissue->area);
+  for (PetscInt c = 0; micro->cell && c < tissue->cells; c++) {
+    if (fabs(micro->cell[c].turgor - 1.0) > ALL) *fills = PETSC_FALSE;
+    if (LamCellsPart(micro->interface) && fabs(micro->cell[c].cohesion - 1.0) > ALL) *fills = PETSC_FALSE;
+  }
+  PetscCall(LamTissueDestroy(&tissue));
+  PetscFunctionReturn(0);
+}
+
 PetscReal LamTissueInnerPerimeter(LamTissue tissue, PetscInt cell, PetscReal distance)
 {
   PetscReal sum = 0.0;

@@ -22,6 +22,12 @@ enum { FREE_KNOTS = 17 };
 static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25};
 #define LEAST_SUCTION 0.125 /* times the scene's suction */
 
+/* Turgor of bonded tissue that depends on it: root intervals, which grow by equal factors, and the scale of the first
+   ones over the range. */
+enum { TURGOR_CELLS = 2 };
+#define TURGOR_SCALE 0.25
+#define ROUNDED_TURGOR 1e-9 /* C1 + C2: loads are rounded to 1e-10 */
+
 /* ---- keys ---- */
 
 PetscBool LamKeyIsNode(PetscInt64 key)
@@ -87,14 +93,14 @@ PetscErrorCode LamGridNodeLoad(LamGrid grid, PetscInt64 key, LamLoad *load)
   PetscFunctionBeginUser;
   PetscCheck(LamKeyIsNode(key), PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "key %lld is not of a node", (long long)key);
   *load = (LamLoad){.F[8] = LamGridF33(grid, place.z), .turgor = grid->turgor};
-  if (grid->contact) {
+  if (LamGridHasColumns(grid)) {
     const PetscReal s = LamGridSuction(grid, place.j);
     PetscReal strain[6];
 
+    load->turgor = s - grid->cohesion;
+    load->cohesion = grid->cohesion;
     LamGridFreeStrain(grid, s, place.z - 1, strain);
     shift += strain[0];
-    load->cohesion = grid->cohesion;
-    load->turgor = s - grid->cohesion;
   }
   for (int k = 0; k < 3; k++) x[k] = shift + grid->step * (PetscReal)place.i[k] / LAM_ROOT;
   /* no F has these strains: return an F that a solver rejects */
@@ -199,6 +205,19 @@ static PetscErrorCode LayOutSuction(const LamScene *scene, const LamSample *box,
   PetscFunctionReturn(0);
 }
 
+/* Of tissue whose response depends on turgor; without a sample box from no turgor to the scene's. */
+static void LayOutTurgor(const LamScene *scene, const LamSample *box, LamGrid g)
+{
+  const PetscReal least = scene->has_sample ? box->turgor_min : PetscMin(0, scene->turgor);
+  const PetscReal most = scene->has_sample ? box->turgor_max : PetscMax(0, scene->turgor);
+
+  g->suction_zero = PetscMin(0, least);
+  g->suction_scale = most > g->suction_zero ? TURGOR_SCALE * (most - g->suction_zero) : 1;
+  g->tau_min = LamGridTau(g, least);
+  g->tau_cells = TURGOR_CELLS;
+  g->tau_step = PetscMax((LamGridTau(g, most) - g->tau_min) / TURGOR_CELLS, 1e-3);
+}
+
 /* Of scenes without a sample box too. */
 static void LayOutF33(const LamSample *box, LamGrid g)
 {
@@ -240,7 +259,8 @@ static PetscErrorCode SetTissue(const LamMicrostructure *micro, LamGrid g)
   PetscCall(LamMicrostructureSymmetry(micro, &symmetry));
   g->symmetric = LamSymmetryIsHexagonal(&symmetry);
   g->axes = LamLatticeAxesOf(micro->orientation);
-  g->turgor_reach = TURGOR_REACH * softest;
+  PetscCall(LamFluidFills(micro, &g->filled));
+  g->turgor_reach = g->contact || g->filled ? TURGOR_REACH * softest : ROUNDED_TURGOR;
   PetscFunctionReturn(0);
 }
 
@@ -261,7 +281,10 @@ PetscErrorCode LamGridCreate(const LamScene *scene, LamResponder solver, LamGrid
   PetscCall(SetTissue(micro, g));
   LayOutStrains(scene, box, g);
   if (scene->sample.F33_max > scene->sample.F33_min) LayOutF33(&scene->sample, g);
-  if (g->contact) PetscCall(LayOutSuction(scene, box, solver, g));
+  if (g->contact)
+    PetscCall(LayOutSuction(scene, box, solver, g));
+  else if (!g->filled)
+    LayOutTurgor(scene, box, g);
   PetscCall(MakeFreeKeys(g));
   PetscFunctionReturn(0);
 }
@@ -320,12 +343,14 @@ PetscErrorCode LamGridGetText(LamGrid g, char **text)
   if (g->z_cells)
     json_object_update_new(object, json_pack("{s:f, s:f, s:I}", "z_min", g->z_min, "z_step", g->z_step, "z_cells",
                                              (json_int_t)g->z_cells));
+  if (LamGridHasColumns(g))
+    json_object_update_new(object, json_pack("{s:f, s:f, s:f, s:I}", "suction_scale", g->suction_scale, "tau_min",
+                                             g->tau_min, "tau_step", g->tau_step, "tau_cells", (json_int_t)g->tau_cells));
   if (g->contact) {
     PetscCall(LamFreeCellToJSON(&g->free, &cell));
-    json_object_update_new(object, json_pack("{s:f, s:f, s:f, s:f, s:I, s:o}", "cohesion", g->cohesion, "suction_scale",
-                                             g->suction_scale, "tau_min", g->tau_min, "tau_step", g->tau_step,
-                                             "tau_cells", (json_int_t)g->tau_cells, "free_cell", cell));
-  }
+    json_object_update_new(object, json_pack("{s:f, s:o}", "cohesion", g->cohesion, "free_cell", cell));
+  } else if (LamGridHasColumns(g))
+    json_object_set_new(object, "suction_zero", json_real(g->suction_zero));
   dumped = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
   json_decref(object);
   PetscCall(PetscStrallocpy(dumped, text));
@@ -337,8 +362,10 @@ static PetscBool ReadSuction(json_t *object, LamGrid g)
 {
   json_int_t cells;
 
-  if (json_unpack(object, "{s:F, s:F, s:F, s:F, s:I}", "cohesion", &g->cohesion, "suction_scale", &g->suction_scale,
-                  "tau_min", &g->tau_min, "tau_step", &g->tau_step, "tau_cells", &cells))
+  if (json_unpack(object, "{s:F, s:F, s:F, s:I}", "suction_scale", &g->suction_scale, "tau_min", &g->tau_min, "tau_step",
+                  &g->tau_step, "tau_cells", &cells) ||
+      json_unpack(object, "{s:F}", g->contact ? "cohesion" : "suction_zero",
+                  g->contact ? &g->cohesion : &g->suction_zero))
     return PETSC_FALSE;
   g->tau_cells = (PetscInt)PetscMin(PetscMax(cells, 0), LAM_GRID_REACH);
   return (PetscBool)(g->suction_scale > 0 && g->tau_min >= 0 && g->tau_step > 0 && g->tau_cells > 0 &&
@@ -378,7 +405,8 @@ static PetscErrorCode ReadText(const char path[], json_t *object, LamGrid g)
                                g->step > 0);
 
   PetscFunctionBeginUser;
-  if (good && g->contact) good = ReadSuction(object, g);
+  /* bonded tissue that needs it may lack it in a file of version 0.1: its table serves its own turgor alone */
+  if (good && (g->contact || (!g->filled && json_object_get(object, "tau_cells")))) good = ReadSuction(object, g);
   if (good) good = ReadF33(object, g);
   PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: %s is not the layout of a grid; the file is damaged",
              path, LAM_GRID_NAME);

@@ -32,7 +32,7 @@ void LamTableBracket(LamTable table, const LamTableNode *node, const LamTablePoi
   PetscInt low = 0, high = count;
 
   ends[0] = ends[1] = NULL;
-  if (!table->grid->contact) {
+  if (!LamGridHasColumns(table->grid)) {
     if (count) ends[0] = ends[1] = states;
     return;
   }
@@ -74,7 +74,7 @@ void LamTableIntervalOf(LamTable table, const LamTableNode *node, const LamTable
   PetscReal from, to;
 
   LamTableBracket(table, node, point, line, a->end);
-  if (!table->grid->contact) return;
+  if (!LamGridHasColumns(table->grid)) return;
   from = a->end[0] ? a->end[0]->j : point->root;
   to = a->end[1] ? a->end[1]->j : point->root + LAM_ROOT;
   a->h = (to - from) * unit;
@@ -142,7 +142,7 @@ static void AddHigherOrder(const LamTableInterval *a, const int order[3], LamTab
   }
 }
 
-/* Bonded tissue: the column is a single state. */
+/* Without columns: a single state. */
 static void TakeState(const LamTableState *state, const int order[3], int corner, LamTableColumn *c)
 {
   c->phi[0].value = state->phi.value;
@@ -162,7 +162,7 @@ static void TakeState(const LamTableState *state, const int order[3], int corner
 /* Phi depends on suction alone; pure second derivatives are unknown on the side of contact. */
 void LamTableFloatingColumn(LamTable table, int level, PetscInt plane, const LamTablePoint *point, LamTableColumn *c)
 {
-  const PetscReal rate = point->s + table->grid->suction_scale; /* ds/dtau = d2s/dtau2 */
+  const PetscReal rate = LamGridSuctionRate(table->grid, point->s);
   PetscReal energy[3], turgor[2][3];
 
   for (int k = 0; k < 3; k++) c->phi[0].hessian[k] = c->phi[1].hessian[k] = c->phi[2].hessian[k] = NAN;
@@ -191,7 +191,7 @@ void LamTableMakeColumn(LamTable table, const LamTableCell *cell, int corner, co
   LamTableIntervalOf(table, node, point, line, a);
   for (int e = 0; e < 2; e++)
     if (a->end[e] && !a->end[e]->has_data) a->end[e] = NULL;
-  if (!table->grid->contact) {
+  if (!LamGridHasColumns(table->grid)) {
     if (a->end[0]) TakeState(a->end[0], order, corner, c);
     return;
   }

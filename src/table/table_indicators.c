@@ -79,7 +79,7 @@ static void AddNode(LamTable table, const LamTableCell *cell, int corner, const 
 
   LamTableBracket(table, node, point, line.number, ends);
   weight *= line.weight;
-  if (!table->grid->contact) {
+  if (!LamGridHasColumns(table->grid)) {
     AddAround(around, &table->source->data[ends[0]->data], order, weight, 1, corner, 0, line.F33);
     return;
   }
@@ -132,7 +132,7 @@ static PetscReal WallThickness(LamTable table, const LamNodeData *r, const Petsc
 
   J = LamLatticeVolume(&grid->axes, &state, J_x, J_xx);
   LamLatticeVariations(&grid->axes, &state, r->F, dF);
-  *slope = r->P33_turgor;
+  *slope = r->P33_turgor + (grid->contact ? 0 : J);
   for (int k = 0; k < 3; k++) {
     gradient[k] = factor * J_x[k];
     for (int i = 0; i < 4; i++) gradient[k] += r->P33_F[i] * dF[k][i];
@@ -172,10 +172,10 @@ static void AddThickness(LamTable table, const Around *around, PetscReal tau_ste
 
   value = WallThickness(table, around->data, is_free ? still : RecallFreeStrain(grid, around->data, memory), gradient,
                         &slope);
-  if (!grid->contact) {
+  if (!LamGridHasColumns(grid)) {
     jet->value = value;
   } else {
-    slope *= around->data->turgor + around->data->cohesion + grid->suction_scale;
+    slope *= LamGridSuctionRate(grid, LamGridSuctionOf(grid, around->data->turgor, around->data->cohesion));
     jet->value += r * r * (1 + 2 * t) * value + (around->end ? -1 : 1) * tau_step * r * r * t * slope;
   }
   for (int k = 0; k < 3 && !is_free; k++) jet->gradient[k] += r * gradient[around->order[k]];
@@ -196,7 +196,7 @@ void LamTableThickness(LamTable table, const LamTablePoint *point, const LamTabl
                        const LamLatticeState *lattice, LamResponse *r)
 {
   const struct LamGrid_s *grid = table->grid;
-  const PetscReal d = grid->contact ? grid->cohesion - r->load.cohesion : r->load.turgor - grid->turgor;
+  const PetscReal d = LamGridTurgorStep(grid, r->load.turgor, r->load.cohesion);
   const PetscReal factor = grid->contact ? r->load.cohesion : -r->load.turgor;
   PetscReal t[3], value, gradient[3] = {0}, g[3], J, J_x[3], J_xx[6], row[4], rate[8] = {0};
   PetscReal turgor = 0, cohesion = 0, stiffness = 0;

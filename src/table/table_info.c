@@ -29,7 +29,7 @@ static void CountState(LamTable table, const LamTableState *state, int level, Ce
   if (data->floating_cells > 0) c->floating++;
   if (!state->good) return;
   for (int k = 0; k < 3; k++) LamRangeWiden(&c->strain, LamLatticeStateOf(&table->grid->axes, data->F).x[k]);
-  LamRangeWiden(&c->suction, data->turgor + data->cohesion);
+  LamRangeWiden(&c->suction, LamGridSuctionOf(table->grid, data->turgor, data->cohesion));
 }
 
 static void CountNodes(LamTable table, Census *c)
@@ -49,7 +49,7 @@ static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, 
   PetscBool complete = PETSC_FALSE, good;
 
   *mixed = PETSC_FALSE;
-  for (int k = 0; k < (table->grid->contact ? TRIED : 1) && !*mixed; k++) {
+  for (int k = 0; k < (LamGridHasColumns(table->grid) ? TRIED : 1) && !*mixed; k++) {
     const LamTablePoint point = {.v = root + (k + 0.5) * LAM_ROOT / TRIED, .root = root, .z = z};
 
     if (!LamTableCellIsComplete(table, cell, &point, &good)) continue;
@@ -61,7 +61,7 @@ static PetscBool IsComplete(LamTable table, const LamTableCell *cell, int root, 
 
 static void CountCell(LamTable table, const LamTableCell *cell, Census *c)
 {
-  const int intervals = table->grid->contact ? (int)table->grid->tau_cells : 1;
+  const int intervals = LamGridHasColumns(table->grid) ? (int)table->grid->tau_cells : 1;
   const int knots = PetscMax(1, (int)table->grid->z_cells);
 
   for (int n = 0; n < intervals * knots; n++) {
@@ -140,13 +140,13 @@ static json_t *GridToJSON(const struct LamGrid_s *grid, PetscReal MPa)
     json_object_set_new(object, "F33", LamRangeToJSON(&F33, 1));
     json_object_set_new(object, "F33_intervals", json_integer(grid->z_cells));
   }
-  if (!grid->contact) {
+  if (!LamGridHasColumns(grid)) {
     json_object_set_new(object, "turgor", json_real(grid->turgor * MPa));
     return object;
   }
   suction = (LamRange){LamGridSuction(grid, 0), LamGridSuction(grid, LAM_ROOT * grid->tau_cells)};
   for (PetscInt m = 0; m < LamFreeCellStates(&grid->free); m++) LamRangeWiden(&strain, grid->free.strain[m]);
-  json_object_set_new(object, "cohesion", json_real(grid->cohesion * MPa));
+  if (grid->contact) json_object_set_new(object, "cohesion", json_real(grid->cohesion * MPa));
   json_object_set_new(object, "suction", LamRangeToJSON(&suction, MPa));
   json_object_set_new(object, "suction_intervals", json_integer(grid->tau_cells));
   json_object_set_new(object, "free_cell_strain", LamRangeToJSON(&strain, 1));
@@ -165,7 +165,7 @@ PetscErrorCode LamTableDescribe(LamTable table, PetscReal MPa, json_t **object)
                       (json_int_t)table->node_count, "nodes_by_level", Levels(table, c.nodes), "cells_by_level",
                       Levels(table, c.complete), "mixed_cells_by_level", Levels(table, c.mixed), "lattice_strain",
                       LamRangeToJSON(&c.strain, 1));
-  if (table->grid->contact) json_object_set_new(*object, "suction", LamRangeToJSON(&c.suction, MPa));
+  if (LamGridHasColumns(table->grid)) json_object_set_new(*object, "suction", LamRangeToJSON(&c.suction, MPa));
   json_object_set_new(*object, "flags",
                       json_pack("{s:I, s:I, s:I, s:I}", "unstable", (json_int_t)c.unstable, "other_branch",
                                 (json_int_t)c.other_branch, "failed", (json_int_t)c.failed, "floating",

@@ -58,7 +58,7 @@ static void MoveAlongZ(const LamTablePlace *place, Potential *p)
 
 static void TauToSuction(LamTable table, const LamTablePlace *place, Potential *p)
 {
-  const PetscReal rate = 1 / (place->point.s + table->grid->suction_scale), *a = place->free_strain; /* dtau/ds */
+  const PetscReal rate = 1 / LamGridSuctionRate(table->grid, place->point.s), *a = place->free_strain; /* dtau/ds */
 
   p->s2 = p->s2 * rate * rate - p->s1 * rate * rate;
   p->s1 *= rate;
@@ -87,18 +87,19 @@ static void PlaneToFull(const PetscReal a[4], PetscReal full[9])
 static void FillPressures(LamTable table, const LamTablePlace *place, const Potential *p, PetscReal plane_J,
                           const PetscReal J_x[3], LamResponse *r)
 {
-  const PetscBool contact = table->grid->contact;
+  const PetscBool contact = table->grid->contact, columns = LamGridHasColumns(table->grid);
   const PetscReal F33 = place->F33, J = F33 * plane_J;
   const PetscReal p1 = p->turgor.value, p2 = place->sum.turgor2;
   PetscReal g[3], P[4];
 
-  /* contact: s = p + g, d = g0 - g; Psi depends on p through s, on g through both */
-  r->energy_turgor = contact ? p->s1 : p1 - J;
-  r->energy_turgor2 = contact ? p->s2 : p2;
+  /* contact: s = p + g, d = g0 - g; Psi depends on p through s, on g through both. Bonded: on p through s or d. */
+  r->energy_turgor = (columns ? p->s1 : p1) - (contact ? 0 : J);
+  r->energy_turgor2 = columns ? p->s2 : p2;
   r->energy_cohesion = contact ? p->s1 - p1 + J : 0;
   r->energy_cohesion2 = contact ? p->s2 + p2 - 2 * p->turgor_s : 0;
   r->energy_turgor_cohesion = contact ? p->s2 - p->turgor_s : 0;
-  for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] : p->turgor.gradient[k] - F33 * J_x[k];
+  for (int k = 0; k < 3; k++)
+    g[k] = (columns ? p->gradient_s[k] : p->turgor.gradient[k]) - (contact ? 0 : F33 * J_x[k]);
   LamLatticeStress(&table->grid->axes, &place->lattice, g, P);
   PlaneToFull(P, r->P_turgor);
   for (int k = 0; k < 3; k++) g[k] = contact ? p->gradient_s[k] - p->turgor.gradient[k] + F33 * J_x[k] : 0;
@@ -110,12 +111,12 @@ static void FillPressures(LamTable table, const LamTablePlace *place, const Pote
 static void FillAxial(LamTable table, const LamTablePlace *place, const Potential *p, PetscReal c, PetscReal J,
                       const PetscReal J_x[3], LamResponse *r)
 {
-  const PetscBool contact = table->grid->contact;
+  const PetscBool contact = table->grid->contact, columns = LamGridHasColumns(table->grid);
   const PetscReal F33 = place->F33;
   PetscReal g[3], row[4];
 
   r->P[8] = p->z1 / F33 + c * J;
-  r->P_turgor[8] = contact ? p->s_z / F33 : p->turgor_z / F33 - J;
+  r->P_turgor[8] = (columns ? p->s_z : p->turgor_z) / F33 - (contact ? 0 : J);
   r->P_cohesion[8] = contact ? (p->s_z - p->turgor_z) / F33 + J : 0;
   for (int k = 0; k < 3; k++) g[k] = p->gradient_z[k] / F33 + c * J_x[k];
   LamLatticeStress(&table->grid->axes, &place->lattice, g, row);
@@ -136,7 +137,7 @@ void LamTableFillPotential(LamTable table, const LamTablePlace *place, LamRespon
   Potential potential, *p = &potential;
 
   Unsort(table, place, p);
-  if (contact) TauToSuction(table, place, p);
+  if (LamGridHasColumns(table->grid)) TauToSuction(table, place, p);
   J = LamLatticeVolume(&table->grid->axes, &place->lattice, J_x, J_xx);
   FillPressures(table, place, p, J, J_x, r);
   r->energy = p->psi.value + c * J;

@@ -71,7 +71,12 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, LamTablePlace
   const struct LamGrid_s *grid = table->grid;
   LamTablePoint *point = &place->point;
 
-  point->step = grid->contact ? grid->cohesion - load->cohesion : load->turgor - grid->turgor;
+  point->step = LamGridTurgorStep(grid, load->turgor, load->cohesion);
+  if (!(fabs(point->step) <= grid->turgor_reach) && !grid->filled && !grid->contact)
+    return Refuse(r,
+                  "turgor is %.4g, that of the database's nodes %.4g (C1+C2): with air, or cells of unequal turgor, a "
+                  "database of version 0.1 has no other; build it anew",
+                  (double)load->turgor, (double)grid->turgor);
   if (!(fabs(point->step) <= grid->turgor_reach))
     return Refuse(
         r,
@@ -79,12 +84,13 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, LamTablePlace
         "walls; at most %.4g apart",
         (double)load->turgor, (double)(grid->contact ? load->turgor + load->cohesion - grid->cohesion : grid->turgor),
         (double)grid->turgor_reach);
-  if (!grid->contact) return PETSC_TRUE;
-  point->s = load->turgor + load->cohesion;
+  if (!LamGridHasColumns(grid)) return PETSC_TRUE;
+  point->s = LamGridSuctionOf(grid, load->turgor, load->cohesion);
   point->tau = LamGridTau(grid, point->s);
   point->v = LAM_ROOT * (point->tau - grid->tau_min) / grid->tau_step;
   if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6)
-    return Refuse(r, "turgor + cohesion is %.4g (C1+C2), the database covers %.4g to %.4g", (double)point->s,
+    return Refuse(r, "turgor%s is %.4g (C1+C2), the database covers %.4g to %.4g", grid->contact ? " + cohesion" : "",
+                  (double)point->s,
                   (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
   point->v = OnFace(PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells), ROUNDED_SUCTION);
   point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
@@ -193,12 +199,11 @@ static void Estimates(LamTable table, const LamTablePlace *place, PetscReal *alo
 
   for (int k = 0; k < 3; k++) finer[k] = place->sum.phi.gradient[k] - place->leaf_gradient[k];
   size = StressSize(place, finer);
-  *along_suction = *along_z = 0;
+  *along_suction = CONTACT_BUMP * StressSize(place, place->sum.bump);
+  *along_z = CONTACT_BUMP * StressSize(place, place->sum.bump_z);
   if (place->child) missing = PetscMax(MISSING_FLOOR, LamTableMissingShare(table, place->child, &place->point));
   if (table->grid->contact) {
     *along_strain = PetscMax(missing * CONTACT_BEND * bend, size);
-    *along_suction = CONTACT_BUMP * StressSize(place, place->sum.bump);
-    *along_z = CONTACT_BUMP * StressSize(place, place->sum.bump_z);
     return;
   }
   if (place->leaf->level)
@@ -328,7 +333,7 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
 
     for (int k = 0; k < 3; k++) at[k] = (int)floor(point->u[k] / size) * size + (c >> k & 1 ? size : 0);
     for (int line = 0; line < LamTableLines(needs->table); line++)
-      for (int e = 0; e < (needs->table->grid->contact ? 2 : 1); e++) Need(needs, at, ends[e], point->z + line);
+      for (int e = 0; e < (LamGridHasColumns(needs->table->grid) ? 2 : 1); e++) Need(needs, at, ends[e], point->z + line);
   }
 }
 
@@ -337,8 +342,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
 static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTablePoint *point, int ends[2])
 {
   ends[0] = point->root;
-  ends[1] = table->grid->contact ? point->root + LAM_ROOT : point->root;
-  for (int c = 0; c < 8 && cell && table->grid->contact; c++) {
+  ends[1] = LamGridHasColumns(table->grid) ? point->root + LAM_ROOT : point->root;
+  for (int c = 0; c < 8 && cell && LamGridHasColumns(table->grid); c++) {
     const LamTableState *at[2];
 
     for (int line = 0; line < LamTableLines(table) && cell->node[c] >= 0; line++) {

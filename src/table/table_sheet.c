@@ -57,7 +57,7 @@ static void AxialOf(LamTable table, const LamTableInterval *a, const int order[3
     const LamTableAxial *state = a->end[e] ? &table->axial[a->end[e] - table->states] : NULL;
 
     if (!state) continue;
-    if (!table->grid->contact) {
+    if (!LamGridHasColumns(table->grid)) {
       AddAxial(state, order, corner, line, 1, 0, 0, x);
       return;
     }
@@ -100,7 +100,7 @@ static void AddJets(PetscReal V, const LamJet *jet, PetscReal D, const LamJet *s
 static void Join(LamTable table, const LamTableInterval *z, const LamTableColumn c[2], const Axial x[2], Sheet *sheet)
 {
   memset(sheet, 0, sizeof(*sheet));
-  for (int o = 0; o < (table->grid->contact ? ORDERS : BONDED_ORDERS); o++) {
+  for (int o = 0; o < (LamGridHasColumns(table->grid) ? ORDERS : BONDED_ORDERS); o++) {
     const int a = order_tau[o], b = order_z[o];
     const PetscReal value[2] = {c[0].phi[a].value, c[1].phi[a].value};
     const PetscReal slope[2] = {x[0].slope[a].value, x[1].slope[a].value}, curve[2] = {x[0].second[a], x[1].second[a]};
@@ -160,7 +160,7 @@ static void AddDerivatives(LamTable table, const LamJet part[ORDERS], LamTableSu
   sum->z1 += part[Z].value;
   sum->z2 += part[ZZ].value;
   for (int k = 0; k < 3; k++) sum->gradient_z[k] += part[Z].gradient[k];
-  if (!table->grid->contact) return;
+  if (!LamGridHasColumns(table->grid)) return;
   sum->tau1 += part[TAU].value;
   sum->tau2 += part[TAU2].value;
   sum->tau_z += part[TAU_Z].value;
@@ -171,7 +171,7 @@ static void AddDerivatives(LamTable table, const LamJet part[ORDERS], LamTableSu
 static void AddTurgor(LamTable table, const Sheet sheets[8], PetscReal h, const PetscReal t[3], PetscReal d,
                       LamTableSum *sum)
 {
-  const int orders = table->grid->contact ? ORDERS : BONDED_ORDERS;
+  const int orders = LamGridHasColumns(table->grid) ? ORDERS : BONDED_ORDERS;
   LamJet corner[8], rate[ORDERS] = {0}, part[ORDERS] = {0};
 
   for (int o = 0; o < orders; o++) {
@@ -193,7 +193,7 @@ static void AddTurgor(LamTable table, const Sheet sheets[8], PetscReal h, const 
 void LamTableAddSheets(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                        LamTableSum *sum)
 {
-  const int size = LAM_ROOT >> cell->level, orders = table->grid->contact ? ORDERS : BONDED_ORDERS;
+  const int size = LAM_ROOT >> cell->level, orders = LamGridHasColumns(table->grid) ? ORDERS : BONDED_ORDERS;
   const PetscReal h = table->grid->step / (1 << cell->level);
   const LamTableInterval z = IntervalAlongZ(table, point);
   LamJet corner[ORDERS][8], part[ORDERS] = {0};

@@ -57,7 +57,7 @@ static const int entry[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
 static void MoveAlong(const struct LamGrid_s *grid, PetscReal s, const PetscReal a[6], PetscReal phi_s,
                       PetscReal phi_ss, const PetscReal gradient_s[3], LamTableState *state)
 {
-  const PetscReal rate = s + grid->suction_scale; /* ds/dtau = d2s/dtau2 */
+  const PetscReal rate = LamGridSuctionRate(grid, s);
 
   for (int k = 0; k < 3; k++) {
     PetscReal moved = gradient_s[k];
@@ -91,8 +91,8 @@ static void FillAxial(const struct LamGrid_s *grid, const LamNodeData *r, PetscR
   axial->first = F33 * (r->P33 + c * J);
   axial->second = F33 * F33 * r->P33_F33 + axial->first;
   axial->turgor = F33 * (r->P33_turgor - (grid->contact ? r->P33_cohesion : 0) + J);
-  axial->mixed =
-      F33 * r->P33_turgor + a[5] * (state->phi.gradient[0] + state->phi.gradient[1] + state->phi.gradient[2]);
+  axial->mixed = F33 * (r->P33_turgor + (grid->contact ? 0 : J)) +
+                 a[5] * (state->phi.gradient[0] + state->phi.gradient[1] + state->phi.gradient[2]);
   for (int k = 0; k < 3; k++) axial->gradient[k] = F33 * (Contract(r->P33_F, dF[k]) + c * J_x[k]);
   for (int k = 0; k < 3; k++) {
     axial->second += 2 * along_z * axial->gradient[k] + a[4] * state->phi.gradient[k];
@@ -107,14 +107,14 @@ static void FillAxial(const struct LamGrid_s *grid, const LamNodeData *r, PetscR
   for (int k = 0; k < 3; k++)
     for (int l = 0; l < 3; l++) axial->gradient[k] += along_z * state->phi.hessian[entry[k][l]];
   axial->second_minus = axial->second;
-  axial->mixed *= r->turgor + r->cohesion + grid->suction_scale; /* ds/dtau */
+  axial->mixed *= LamGridSuctionRate(grid, LamGridSuctionOf(grid, r->turgor, r->cohesion));
 }
 
-/* Bonded: Psi + p J; contact: Psi - g J = Psi + p J - s J. z: that of the place. */
+/* Phi of bonded tissue: Psi + p J; of contact: Psi - g J = Psi + p J - s J. z: that of the place. */
 static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, int z, LamTableState *state,
                       LamTableAxial *axial)
 {
-  const PetscReal F33 = LamGridF33(grid, z), s = r->turgor + r->cohesion;
+  const PetscReal F33 = LamGridF33(grid, z), s = LamGridSuctionOf(grid, r->turgor, r->cohesion);
   const PetscReal factor = F33 * (grid->contact ? -r->cohesion : r->turgor);
   const PetscReal J = F33 * (r->F[0] * r->F[3] - r->F[1] * r->F[2]);
   PetscReal dF[3][4], J_x[3], along[3], at_rest[4], a[6] = {0};
@@ -129,12 +129,13 @@ static void FillState(const struct LamGrid_s *grid, const LamNodeData *r, int z,
   if (grid->contact) state->turgor2 += r->energy_cohesion2 - 2 * r->energy_turgor_cohesion;
   for (int k = 0; k < 3; k++) {
     state->turgor_gradient[k] = Contract(at_rest, dF[k]) + F33 * J_x[k];
-    along[k] = Contract(r->P_turgor, dF[k]);
+    along[k] = Contract(r->P_turgor, dF[k]) + (grid->contact ? 0 : F33 * J_x[k]);
   }
   if (axial) FillAxial(grid, r, F33, a, along, dF, J_x, state, axial);
-  if (!grid->contact) return; /* bonded: no dependence on cohesion, whose derivatives may be unknown */
-  state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion; /* in s, at fixed x */
-  MoveAlong(grid, s, a, r->energy_turgor, r->energy_turgor2, along, state);
+  if (!LamGridHasColumns(grid)) return;
+  /* in s, at fixed x; bonded tissue does not depend on cohesion, whose derivatives may be unknown */
+  if (grid->contact) state->turgor_tau = r->energy_turgor2 - r->energy_turgor_cohesion;
+  MoveAlong(grid, s, a, r->energy_turgor + (grid->contact ? 0 : J), r->energy_turgor2, along, state);
 }
 
 static PetscBool IsFinite(const LamTableState *s)

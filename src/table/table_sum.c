@@ -40,13 +40,13 @@ static void AddTurgor(LamTable table, const LamTableColumn columns[8], PetscReal
 
   for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], 0, 1, d);
   LamHermiteCubic(corner, h, t, &sum->turgor1);
-  if (table->grid->contact) {
+  if (LamGridHasColumns(table->grid)) {
     for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], 1, 1, d);
     LamHermiteCubic(corner, h, t, &rate_tau);
     sum->turgor1_tau += rate_tau.value;
   }
   if (d == 0) return;
-  for (int order_tau = 0; order_tau < (table->grid->contact ? 3 : 1); order_tau++) {
+  for (int order_tau = 0; order_tau < (LamGridHasColumns(table->grid) ? 3 : 1); order_tau++) {
     for (int c = 0; c < 8; c++) corner[c] = TurgorJet(&columns[c], order_tau, d, 0.5 * d * d);
     LamHermiteCubic(corner, h, t, order_tau ? &along[order_tau] : &sum->phi);
   }
@@ -91,7 +91,7 @@ PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const L
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum)
 {
-  const int size = LAM_ROOT >> cell->level, orders = table->grid->contact ? 3 : 1;
+  const int size = LAM_ROOT >> cell->level, orders = LamGridHasColumns(table->grid) ? 3 : 1;
   const PetscReal h = table->grid->step / (1 << cell->level);
   LamJet corner[3][8], first = {0}, second = {0};
   LamTableColumn columns[8];
@@ -117,7 +117,7 @@ void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoi
   for (int k = 0; k < 3; k++) sum->bump[k] = sqrt(sum->bump[k] * sum->bump[k] + bump[k]);
   LamHermiteQuintic(corner[0], h, t, &sum->phi);
   AddTurgor(table, columns, h, t, point->step, sum);
-  if (!table->grid->contact) return;
+  if (!LamGridHasColumns(table->grid)) return;
   LamHermiteQuintic(corner[1], h, t, &first);
   LamHermiteQuintic(corner[2], h, t, &second);
   sum->tau1 += first.value;

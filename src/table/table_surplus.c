@@ -27,7 +27,7 @@ static PetscBool CoarseSum(LamTable table, const LamTableNode *node, PetscReal v
   int shifted[3], sorted[3]; /* in quarters */
 
   memset(sum, 0, sizeof(*sum));
-  point.s = table->grid->contact ? table->grid->suction_scale * expm1(point.tau) : 0;
+  point.s = LamGridHasColumns(table->grid) ? LamGridSuctionAt(table->grid, point.tau) : 0;
   point.root = PetscMin((int)v / LAM_ROOT, (int)table->grid->tau_cells - 1) * LAM_ROOT;
   /* sorted after a shift to the sides, since cells are found by their sorted corner */
   for (int k = 0; k < 3; k++) shifted[k] = 4 * node->i[k] + (sides >> k & 1 ? -1 : 1);
@@ -336,7 +336,7 @@ void LamTableMakeNode(LamTable table, PetscInt n)
     Subtract(table, n);
     for (PetscInt s = node->first; s < node->first + node->count; s++)
       if (table->states[s].has_data) table->states[s].phi.third = MixedThird(table, node, &table->states[s]);
-    if (table->grid->contact) SlopesAlongColumns(table, node);
+    if (LamGridHasColumns(table->grid)) SlopesAlongColumns(table, node);
     for (PetscInt s = node->first; table->axial && s < node->first + node->count; s++)
       if (table->states[s].has_data) SlopesAlongZ(table, node, s);
     atomic_store_explicit(&node->stage, LAM_NODE_MADE, memory_order_release);
