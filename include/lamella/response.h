@@ -131,6 +131,7 @@ typedef struct {
   PetscInt unknowns;
   PetscReal seconds;
   PetscReal error_estimate; /* relative error of P, as LamStressError */
+  PetscReal tangent_error_estimate; /* of an interpolated response: of the tangent, as LamTangentError; else NaN */
   PetscReal distance;       /* strain distance of a query to the record that was used; 0 for a solve */
   char reason[192];         /* why the status is not `converged`; otherwise empty */
 } LamResponse;
@@ -171,6 +172,10 @@ LAM_EXPORT PetscReal LamAxialError(LamStressScale scale, const PetscReal P[9], c
 LAM_EXPORT PetscReal LamWholeError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9]);
 /* LamStressError for an error of this norm. */
 LAM_EXPORT PetscReal LamStressErrorOfSize(LamStressScale scale, PetscReal size, const PetscReal P_ref[9]);
+/* Error of tangent A against A_ref in the plane: |A - A_ref| / (|A_ref| + scale.plane), Frobenius norms. */
+LAM_EXPORT PetscReal LamTangentError(LamStressScale scale, const PetscReal A[81], const PetscReal A_ref[81]);
+/* LamTangentError for an error of this norm. */
+LAM_EXPORT PetscReal LamTangentErrorOfSize(LamStressScale scale, PetscReal size, const PetscReal A_ref[81]);
 
 /*
   A named number or array of a response. HDF5 records, JSON and the docs are generated from this list.

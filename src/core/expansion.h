@@ -8,9 +8,13 @@
 
 /* x = (c0, c1, c2, p, g): c0 = (C11 + C22)/2, c1 = (C11 - C22)/2, c2 = C12, turgor, cohesion; at one F33. */
 #define LAM_VARIABLES 5
-/* Of turgor, and of turgor with cohesion, in the distance of loads: strain per pressure in units of C1 + C2. */
+/*
+  In the distance of loads, strain per pressure in units of C1 + C2: of turgor, which only compresses walls; of turgor
+  with cohesion; and of turgor where the fluid does not fill what the walls leave (LamFluidFills).
+*/
 #define LAM_TURGOR_WEIGHT 0.011
 #define LAM_SUCTION_WEIGHT 0.5
+#define LAM_UNFILLED_WEIGHT 0.25
 
 /*
   Value, gradient and Hessian at x of Phi = Psi + p J, J = det F. Without the fluid's part -p J the potential varies slowly with J

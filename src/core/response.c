@@ -104,6 +104,7 @@ const LamMember LamResponseMembers[] = {
     {INT(unknowns, "unknowns of the solve")},
     {IN("s", seconds, "time of the solve, s")},
     {REAL(error_estimate, 1, 0, "estimated relative error of P")},
+    {REAL(tangent_error_estimate, 1, 0, "of an interpolated response: estimated relative error of its tangent in the plane")},
     {REAL(distance, 1, 0, "distance in strain to the record that responded")},
     {"reason", LAM_MEMBER_TEXT, sizeof(((LamResponse *)0)->reason), AT(reason), 0, NULL,
      "why the status is not converged", NULL, NULL},
@@ -162,6 +163,30 @@ PetscReal LamStressError(LamStressScale scale, const PetscReal P[9], const Petsc
 
   for (PetscInt i = 0; i < 9; i++) difference[i] = P[i] - P_ref[i];
   return LamStressErrorOfSize(scale, SizeInPlane(difference), P_ref);
+}
+
+static PetscReal TangentSizeInPlane(const PetscReal A[81])
+{
+  PetscReal sum = 0;
+
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++)
+      for (int k = 0; k < 2; k++)
+        for (int l = 0; l < 2; l++) sum += PetscSqr(A[27 * i + 9 * j + 3 * k + l]);
+  return sqrt(sum);
+}
+
+PetscReal LamTangentErrorOfSize(LamStressScale scale, PetscReal size, const PetscReal A_ref[81])
+{
+  return size / (TangentSizeInPlane(A_ref) + scale.plane);
+}
+
+PetscReal LamTangentError(LamStressScale scale, const PetscReal A[81], const PetscReal A_ref[81])
+{
+  PetscReal difference[81];
+
+  for (PetscInt i = 0; i < 81; i++) difference[i] = A[i] - A_ref[i];
+  return LamTangentErrorOfSize(scale, TangentSizeInPlane(difference), A_ref);
 }
 
 PetscReal LamAxialError(LamStressScale scale, const PetscReal P[9], const PetscReal P_ref[9])

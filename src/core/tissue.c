@@ -193,10 +193,10 @@ PetscErrorCode LamFluidFills(const LamMicrostructure *micro, PetscBool *fills)
   PetscFunctionBeginUser;
   PetscCall(LamTissueCreate(micro, &tissue));
   for (PetscInt c = 0; c < tissue->cells; c++) cells += LamTissueCellArea(tissue, c);
-  *fills = (PetscBool)(fabs(cells - tissue->area) <= ALL * tissue->area);
+  *fills = (PetscBool)(PetscAbsReal(cells - tissue->area) <= ALL * tissue->area);
   for (PetscInt c = 0; micro->cell && c < tissue->cells; c++) {
-    if (fabs(micro->cell[c].turgor - 1.0) > ALL) *fills = PETSC_FALSE;
-    if (LamCellsPart(micro->interface) && fabs(micro->cell[c].cohesion - 1.0) > ALL) *fills = PETSC_FALSE;
+    if (PetscAbsReal(micro->cell[c].turgor - 1.0) > ALL) *fills = PETSC_FALSE;
+    if (LamCellsPart(micro->interface) && PetscAbsReal(micro->cell[c].cohesion - 1.0) > ALL) *fills = PETSC_FALSE;
   }
   PetscCall(LamTissueDestroy(&tissue));
   PetscFunctionReturn(0);

@@ -69,6 +69,7 @@ static PetscErrorCode Load(const char path[], hid_t file, void *ctx)
   if (loading->later) PetscCall(MakeLater(path, db->header.committed, loading->later));
   PetscCall(PetscStrallocpy(path, &db->path));
   PetscCall(LamImagesMake(&db->header.micro, &db->images));
+  PetscCall(LamScatterMetricMake(&db->header.micro, &db->metric));
   PetscCall(LamGrow(db->n, db->header.committed, sizeof(*db->keys), &db->capacity, &db->keys));
   PetscCall(LamFileScanRecords(path, file, db->header.committed, LoadRecord, ctx));
   db->records_first = db->n;
@@ -132,6 +133,7 @@ PetscErrorCode LamDatabaseCreateEmpty(const LamScene *scene, LamDatabase *databa
   PetscCall(PetscMalloc1(LAM_HASH_LENGTH, &db->header.hash));
   PetscCall(LamMicrostructureDescribe(&scene->micro, &db->header.description, db->header.hash));
   PetscCall(LamImagesMake(&scene->micro, &db->images));
+  PetscCall(LamScatterMetricMake(&scene->micro, &db->metric));
   *database = db;
   PetscFunctionReturn(0);
 }

@@ -48,6 +48,16 @@ typedef struct {
 } LamScatter;
 
 /*
+  Distances of scattered records from a query, dC/2 being the Green strain, so that the distance is a strain:
+    d^2 = |dc|^2 / 4 + (w dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2, + dF33^2
+  w is LAM_TURGOR_WEIGHT where the fluid fills what the walls leave, else LAM_UNFILLED_WEIGHT, with contact of dg as well.
+  The members are the coefficients of |dc|^2, dp^2, 2 dp dg, dg^2.
+*/
+typedef struct {
+  PetscReal strain, pp, pg, gg;
+} LamScatterMetric;
+
+/*
   Records 0 .. n-1: those of the file, then those added in memory. For nodes of the grid the database keeps the data
   that the table needs, for other records the full response. The full responses of nodes in the file are loaded on the
   first LamDatabaseGetRecords.
@@ -56,6 +66,7 @@ struct LamDatabase_s {
   LamHeader header; /* owned; `committed` counts the file's records, not n */
   char *path;       /* owned; NULL: no file */
   LamImages images;
+  LamScatterMetric metric;
   PetscInt n, capacity;
   PetscInt64 *keys; /* [n] owned */
 
@@ -94,18 +105,10 @@ void LamImagesBackHessian(const LamImages *images, PetscInt image, PetscReal H[L
 
 /* ---- scatter.c ---- */
 PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record);
+PetscErrorCode LamScatterMetricMake(const LamMicrostructure *micro, LamScatterMetric *metric);
 
-/*
-  Distances of scattered records from a query, dC/2 being the Green strain, so that the distance is a strain:
-    d^2 = |dc|^2 / 4 + (LAM_TURGOR_WEIGHT dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2, + dF33^2
-*/
 typedef PetscReal LamScatterVector[LAM_VARIABLES];
 typedef PetscReal LamScatterMatrix[LAM_VARIABLES][LAM_VARIABLES];
-
-/* The coefficients of |dc|^2, dp^2, 2 dp dg, dg^2 in the squared distance. */
-typedef struct {
-  PetscReal strain, pp, pg, gg;
-} LamScatterMetric;
 
 typedef struct {
   PetscInt state, image; /* state -1: none */
@@ -114,7 +117,6 @@ typedef struct {
 
 typedef struct {
   LamDatabase db;
-  LamScatterMetric metric;
   LamScatterVector x; /* of the query */
   LamScatterPlace place;
   LamScatterVector turned[LAM_MAX_IMAGES];  /* x in the frame of each image */

@@ -136,7 +136,7 @@ static void AddState(const LamScatterSearch *search, PetscInt k, PetscReal reach
 
     if (!(state->images >> i & 1) || LamScatterDistance2(search, state, i) >= reach * reach) continue;
     EvaluateModel(search, state, i, delta, &m);
-    if (!MakeWeight(&search->metric, delta, reach, &w)) continue;
+    if (!MakeWeight(&search->db->metric, delta, reach, &w)) continue;
     AddModel(&w, &m, s);
     s->A3333 += w.value * A3333;
     for (int a = 0; a < LAM_VARIABLES; a++)
@@ -153,7 +153,7 @@ static void Mirror(LamScatterMatrix H)
 /* Adds the metric's part of the Hessians, and the records' own Hessians in the query's frame. */
 static void CompleteHessians(const LamScatterSearch *search, Sums *s)
 {
-  const LamScatterMetric *m = &search->metric;
+  const LamScatterMetric *m = &search->db->metric;
   const PetscReal diagonal[LAM_VARIABLES] = {m->strain, m->strain, m->strain, m->pp, m->gg};
 
   for (int a = 0; a < LAM_VARIABLES; a++) {
@@ -274,6 +274,15 @@ static PetscBool MayBlend(const LamScatterSearch *search, PetscReal radius, LamR
   return PETSC_TRUE;
 }
 
+/* P has the error e, and errs to second order in the distance d: the tangent by 2 e / d, e and d of the same state. */
+static void EstimateTangent(const LamScatterSearch *search, LamResponse *r)
+{
+  const LamStressScale scale = LamStressScaleOf(&search->db->header.micro);
+  const PetscReal size = r->error_estimate / LamStressErrorOfSize(scale, 1, r->P);
+
+  r->tangent_error_estimate = LamTangentErrorOfSize(scale, r->distance > 0 ? 2 * size / r->distance : 0, r->tangent);
+}
+
 static PetscBool IsOwnState(const LamScatterNearest *at)
 {
   return (PetscBool)(at->distance2 < PetscSqr(LAM_OWN_STATE));
@@ -293,6 +302,7 @@ static void RespondFromModel(const LamScatterSearch *search, const LamScatterNea
   r->distance = sqrt(at->distance2);
   r->error_estimate = error;
   Fill(search, at, PETSC_TRUE, &e, record->tangent[80], r);
+  EstimateTangent(search, r);
   if (IsOwnState(at)) return;
   TakeVolumes(record, r);
   r->opening_fraction = PetscMax(r->opening_fraction, 0);
@@ -318,6 +328,7 @@ static void RespondFromBlend(const LamScatterSearch *search, PetscReal reach, La
       LamStressErrorOfSize(LamStressScaleOf(&search->db->header.micro), Spread(search, &sums, &blend, r->load.F), r->P);
   if (LamCellsPart(search->db->header.micro.interface)) spread *= CONTACT_DOUBT;
   r->error_estimate = hypot(spread, LonelyError(search, reach, &sums));
+  EstimateTangent(search, r);
 }
 
 /* Replaces the response by LAM_OUT_OF_REACH with the reason. */

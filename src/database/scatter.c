@@ -3,6 +3,7 @@
 */
 #include "database_internal.h"
 #include <lamella/ellipticity.h>
+#include <lamella/tissue.h>
 #include <math.h>
 #include <string.h>
 
@@ -76,12 +77,17 @@ PetscErrorCode LamScatterAdd(LamDatabase database, const LamResponse *record)
 
 /* ---- the nearest records ---- */
 
-static LamScatterMetric MakeMetric(LamDatabase db)
+PetscErrorCode LamScatterMetricMake(const LamMicrostructure *micro, LamScatterMetric *metric)
 {
-  const PetscReal turgor = PetscSqr(LAM_TURGOR_WEIGHT);
-  const PetscReal suction = db->header.micro.interface == LAM_INTERFACE_BONDED ? 0 : PetscSqr(LAM_SUCTION_WEIGHT);
+  const PetscBool bonded = (PetscBool)(micro->interface == LAM_INTERFACE_BONDED);
+  const PetscReal suction = bonded ? 0 : PetscSqr(LAM_SUCTION_WEIGHT), unfilled = PetscSqr(LAM_UNFILLED_WEIGHT);
+  PetscBool filled;
 
-  return (LamScatterMetric){0.25, turgor + suction, suction, suction};
+  PetscFunctionBeginUser;
+  PetscCall(LamFluidFills(micro, &filled));
+  *metric = (LamScatterMetric){0.25, suction + (filled ? PetscSqr(LAM_TURGOR_WEIGHT) : unfilled), suction,
+                               suction + (filled || bonded ? 0 : unfilled)};
+  PetscFunctionReturn(0);
 }
 
 PetscReal LamScatterApply(const LamScatterMetric *m, const LamScatterVector delta, LamScatterVector v)
@@ -97,7 +103,7 @@ PetscReal LamScatterApply(const LamScatterMetric *m, const LamScatterVector delt
 
 PetscReal LamScatterLowerBound(const LamScatterSearch *search, const LamScatterPlace *place)
 {
-  const LamScatterMetric *m = &search->metric;
+  const LamScatterMetric *m = &search->db->metric;
   const LamScatterPlace *at = &search->place;
   const PetscReal dm = place->mean - at->mean, dd = place->deviator - at->deviator;
   const PetscReal dp = place->turgor - at->turgor, dg = place->cohesion - at->cohesion;
@@ -116,7 +122,7 @@ PetscReal LamScatterDistance2(const LamScatterSearch *search, const LamScattered
   LamScatterVector delta, v;
 
   for (int a = 0; a < LAM_VARIABLES; a++) delta[a] = search->turned[image][a] - state->model.x[a];
-  return LamScatterApply(&search->metric, delta, v) + PetscSqr(search->place.F33 - state->F33);
+  return LamScatterApply(&search->db->metric, delta, v) + PetscSqr(search->place.F33 - state->F33);
 }
 
 void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *search)
@@ -124,7 +130,7 @@ void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *sear
   const LamScatterNearest none = {-1, 0, INFINITY};
 
   *search = (LamScatterSearch){
-      .db = db, .metric = MakeMetric(db), .blends = none, .alone = none, .refuses = none, .kinks = none};
+      .db = db, .blends = none, .alone = none, .refuses = none, .kinks = none};
   LamVariables(load, search->x);
   search->place = PlaceOf(search->x, load->F[8]);
   for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);

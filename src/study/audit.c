@@ -157,22 +157,6 @@ PetscErrorCode LamAuditDestroy(LamAudit *audit)
 
 /* ---- comparison with solves ---- */
 
-static PetscReal TangentError(LamStressScale scale, const PetscReal A[81], const PetscReal A_ref[81])
-{
-  PetscReal difference = 0, reference = 0;
-
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++)
-      for (int k = 0; k < 2; k++)
-        for (int l = 0; l < 2; l++) {
-          const int at = 27 * i + 9 * j + 3 * k + l;
-
-          difference += (A[at] - A_ref[at]) * (A[at] - A_ref[at]);
-          reference += A_ref[at] * A_ref[at];
-        }
-  return sqrt(difference) / (sqrt(reference) + scale.plane);
-}
-
 /* Repeats the query: its response (two kilobytes) is not stored. */
 PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *fresh)
 {
@@ -195,7 +179,8 @@ PetscErrorCode LamAuditCompare(LamAudit *audit, PetscInt i, const LamResponse *f
                          .error = LamStressError(scale, answer.P, fresh->P),
                          .axial = audit->box.F33[1] > audit->box.F33[0] ? LamAxialError(scale, answer.P, fresh->P)
                                                                         : (PetscReal)NAN,
-                         .tangent = TangentError(scale, answer.tangent, fresh->tangent),
+                         .tangent = LamTangentError(scale, answer.tangent, fresh->tangent),
+                         .tangent_estimate = answer.tangent_error_estimate,
                          .opening = fabs(answer.opening_fraction - fresh->opening_fraction),
                          .lumen = fabs(answer.lumen_fraction - fresh->lumen_fraction),
                          .query_seconds = answer.seconds,

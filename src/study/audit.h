@@ -19,7 +19,7 @@ typedef struct {
   PetscBool compared;
   PetscReal estimate, error; /* of P: error estimate of the response; LamStressError between response and solve */
   PetscReal axial;           /* LamAxialError; NaN: F33 is 1 alone */
-  PetscReal tangent;         /* |A - A_ref| / (|A_ref| + stress of 1 % strain), in-plane entries, Frobenius */
+  PetscReal tangent, tangent_estimate; /* LamTangentError, and the estimate of the response */
   PetscReal opening, lumen;  /* absolute differences of opening_fraction and lumen_fraction */
   PetscReal query_seconds, solve_seconds;
 } LamAudited;

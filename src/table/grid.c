@@ -22,9 +22,8 @@ enum { FREE_KNOTS = 17 };
 static const LamSample default_box = {.stretch_min = -0.02, .stretch_max = 0.25};
 #define LEAST_SUCTION 0.125 /* times the scene's suction */
 
-/* Turgor of bonded tissue that depends on it: root intervals, which grow by equal factors, and the scale of the first
-   ones over the range. */
-enum { TURGOR_CELLS = 2 };
+/* Turgor of bonded tissue that depends on it: root intervals, and the scale over the range. */
+enum { TURGOR_CELLS = 1 };
 #define TURGOR_SCALE 0.25
 #define ROUNDED_TURGOR 1e-9 /* C1 + C2: loads are rounded to 1e-10 */
 

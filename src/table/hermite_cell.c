@@ -175,24 +175,30 @@ void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], 
   AddCubic(corner, u, 2, sum);
 }
 
-void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3])
+void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal spread[3])
 {
   for (PetscInt k = 0; k < 3; k++) {
-    PetscReal bends = 0, turns = 0;
+    PetscReal sum = 0, square = 0;
+    PetscInt known = 0;
 
     for (PetscInt e = 0; e < 4; e++) { /* edges along k, from c */
       const PetscInt c = e % (1 << k) + (e >> k << (k + 1));
       const LamJet *low = &corner[c], *high = &corner[c | 1 << k];
       const PetscReal rise = 6 * (high->value - low->value), g0 = h * low->gradient[k], g1 = h * high->gradient[k];
       const PetscReal d0 = h * h * low->hessian[k] - (rise - 4 * g0 - 2 * g1),
-                      d1 = h * h * high->hessian[k] - (2 * g0 + 4 * g1 - rise), cubic = 6 * (g0 + g1) - 2 * rise;
+                      d1 = h * h * high->hessian[k] - (2 * g0 + 4 * g1 - rise);
 
-      if (!isnan(d0)) bends += d0 * d0;
-      if (!isnan(d1)) bends += d1 * d1;
-      turns += cubic * cubic;
+      for (PetscInt end = 0; end < 2; end++) {
+        const PetscReal d = end ? d1 : d0;
+
+        if (isnan(d)) continue;
+        known++;
+        sum += d;
+        square += d * d;
+      }
     }
-    bend[k] = sqrt(bends / 8) / h;
-    turn[k] = sqrt(turns / 4) / h;
+    bend[k] = sqrt(square / 8) / h;
+    spread[k] = known ? sqrt(PetscMax(0, square - sum * sum / (PetscReal)known) / 8) / h : 0;
   }
 }
 

@@ -31,11 +31,11 @@ PetscReal LamHermiteQuinticValue(const LamJet corner[8], PetscReal h, const Pets
 /* The first without bubbles. */
 void LamHermiteCubic(const LamJet corner[8], PetscReal h, const PetscReal t[3], LamJet *sum);
 /*
-  Root mean squares over the edges of each direction k, in units of a slope. bend[k]: h times the known second
-  derivative at an end minus that of the cubic. turn[k]: h times the difference of the cubic's second derivatives at the
-  two ends.
+  Of the four edges of each direction k, in units of a slope: h times the known second derivative at an end minus that
+  of the cubic. bend[k]: root mean square over the ends; spread[k]: standard deviation. The bubbles reproduce a common
+  value of all ends (a constant fourth derivative), so the error goes with the spread.
 */
-void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal turn[3]);
+void LamHermiteSizes(const LamJet corner[8], PetscReal h, PetscReal bend[3], PetscReal spread[3]);
 /*
   Interpolates from values and gradients alone, to third order: cubic along the edges, linear between them
   (transfinite), so that no mixed derivatives are needed. Continuous, not C1. Writes value and gradient.

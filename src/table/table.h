@@ -114,11 +114,11 @@ typedef struct {
   PetscReal turgor1_tau, turgor2;
   PetscReal z1, z2, tau_z, gradient_z[3], turgor1_z; /* along ln F33 */
   /*
-    Input of the error estimate, components of the gradient. bend, turn: LamHermiteSizes of the level's part on the
+    Input of the error estimate, components of the gradient. bend, spread: LamHermiteSizes of the level's part on the
     finest complete cell. bump: difference between the cubic and the line along tau, between two states of a column;
     root of the sum of squares over the cells of all levels. bump_z: likewise along ln F33.
   */
-  PetscReal bend[3], turn[3], bump[3], bump_z[3];
+  PetscReal bend[3], spread[3], bump[3], bump_z[3];
 } LamTableSum;
 
 /* ---- table_make.c ---- */
@@ -205,7 +205,7 @@ static inline PetscBool LamTableRestsOn(const LamTableState *const ends[2], int 
 }
 /* Share of corners without states among those of the cell's own level, weighted by linear interpolation, 0 to 1. */
 PetscReal LamTableMissingShare(LamTable table, const LamTableCell *cell, const LamTablePoint *point);
-/* Adds a cell's part to the sum; `estimate`: also writes bend and turn. */
+/* Adds a cell's part to the sum; `estimate`: also writes bend and spread. */
 void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoint *point, PetscBool estimate,
                      LamTableSum *sum);
 

@@ -213,7 +213,7 @@ void LamTableAddSheets(LamTable table, const LamTableCell *cell, const LamTableP
     }
     sum->turgor2 += weight * sheets[c].turgor2[PHI];
   }
-  if (estimate) LamHermiteSizes(corner[PHI], h, sum->bend, sum->turn);
+  if (estimate) LamHermiteSizes(corner[PHI], h, sum->bend, sum->spread);
   for (int k = 0; k < 3; k++) {
     sum->bump[k] = sqrt(PetscSqr(sum->bump[k]) + bump[k]);
     sum->bump_z[k] = sqrt(PetscSqr(sum->bump_z[k]) + bump_z[k]);

@@ -113,7 +113,7 @@ void LamTableAddCell(LamTable table, const LamTableCell *cell, const LamTablePoi
     sum->turgor2 += weight * columns[c].turgor2[0];
     for (int k = 0; k < 3; k++) bump[k] += columns[c].bump[k] * columns[c].bump[k] / 8;
   }
-  if (estimate) LamHermiteSizes(corner[0], h, sum->bend, sum->turn);
+  if (estimate) LamHermiteSizes(corner[0], h, sum->bend, sum->spread);
   for (int k = 0; k < 3; k++) sum->bump[k] = sqrt(sum->bump[k] * sum->bump[k] + bump[k]);
   LamHermiteQuintic(corner[0], h, t, &sum->phi);
   AddTurgor(table, columns, h, t, point->step, sum);

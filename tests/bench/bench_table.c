@@ -46,10 +46,10 @@ static void Quintic(const Cell *cell, LamJet *sum)
 
 static void Sizes(const Cell *cell, LamJet *sum)
 {
-  PetscReal bend[3], turn[3];
+  PetscReal bend[3], spread[3];
 
-  LamHermiteSizes(cell->corner, EDGE, bend, turn);
-  sum->value += bend[0] + turn[0];
+  LamHermiteSizes(cell->corner, EDGE, bend, spread);
+  sum->value += bend[0] + spread[0];
 }
 
 static void Cubic(const Cell *cell, LamJet *sum)

@@ -18,7 +18,7 @@ expect 0 "$lamella" verify db.h5 --samples 30 --json
 [ "$(wc -l <out.txt)" = 1 ] || fail "more than one line"
 [ "$(value compared)" = 30 ] || fail "not 30 answers compared: $(cat out.txt)"
 has out.txt '"holds": true' '"refused": {' '"measured": {"P": {"median": ' '"tangent": {' '"estimated": {"P": {"median": ' \
-  '"share_beyond_accuracy": 0.0' '"share_estimate_within_5": [0-9n]' '"worst": {"F": '
+  '"share_beyond_accuracy": 0.0' '"share_estimate_holds": 1.0' '"share_tangent_estimate_holds": [0-9]' '"worst": {"F": '
 
 # one seed draws one set of states
 cp out.txt first.txt

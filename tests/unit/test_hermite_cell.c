@@ -354,29 +354,29 @@ TEST(edges_are_continuous)
     }
 }
 
-/* 3 y^4: its second derivative less that of the cubic is 6 H^2 at both ends. 5 z^3: turns by 30 H. */
-static LamJet QuarticAndCubic(const double x[3])
+/* 3 y^4: its second derivative less that of the cubic is 6 H^2 at both ends. x^4 z: 2 H^2 z. */
+static LamJet Quartics(const double x[3])
 {
-  const int quartic[3] = {0, 4, 0}, cubic[3] = {0, 0, 3};
+  const int quartic[3] = {0, 4, 0}, mixed[3] = {4, 0, 1};
   LamJet jet = {0};
 
   AddMonomial(x, quartic, 3, &jet);
-  AddMonomial(x, cubic, 5, &jet);
+  AddMonomial(x, mixed, 1, &jet);
   return jet;
 }
 
-TEST(sizes_tell_fourth_and_third_derivatives)
+TEST(sizes_are_those_of_fourth_derivatives_and_their_spread)
 {
   LamJet corner[8];
-  double bend[3], turn[3];
+  double bend[3], spread[3];
 
-  SampleCorners(QuarticAndCubic, corner);
-  LamHermiteSizes(corner, H, bend, turn);
-  assert_near(bend[0], 0, 1e-13);
+  SampleCorners(Quartics, corner);
+  LamHermiteSizes(corner, H, bend, spread);
+  assert_near(bend[0], H * H * H * sqrt(2 * (PetscSqr(origin[2]) + PetscSqr(origin[2] + H))), 1e-13);
   assert_near(bend[1], 6 * H * H * H, 1e-13);
   assert_near(bend[2], 0, 1e-13);
-  assert_near(turn[0], 0, 1e-13);
-  assert_near(turn[2], 30 * H * H, 1e-12);
+  assert_near(spread[0], H * H * H * H, 1e-13);
+  assert_near(spread[1], 0, 1e-7);
 }
 
 TEST(results_are_added_to_the_sum)
