@@ -31,12 +31,12 @@ enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8, BONDED_INTERVAL = LAM
   times the estimate. With contact Phi has kinks at the scale of the cells, so that the bubbles are no better than they
   are large, also next to a node.
 */
-#define SPREAD 0.2
-#define BUMP 0.15
+#define SPREAD 0.25
+#define BUMP 0.3
 #define MISSING_FLOOR 0.25
 #define CONTACT_BEND 0.25
 #define CONTACT_BUMP 0.5
-#define TANGENT 1.0
+#define TANGENT 1.5
 
 /* ---- position ---- */
 
@@ -352,6 +352,38 @@ static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTa
     if (ends[e] == point->v) ends[1 - e] = ends[e];
 }
 
+/*
+  The widest interval of suction around the point among the columns that its response rests on, of all levels; returns
+  the level of its cell. A coarse column that stays as it is would leave its error to all finer ones.
+*/
+static int WidestInterval(LamTable table, const LamTablePlace *place, int ends[2])
+{
+  int widest = 0;
+
+  ends[0] = ends[1] = place->point.root;
+  for (int level = 0; LamGridHasColumns(table->grid) && level <= place->leaf->level; level++) {
+    const LamTableCell *cell;
+    LamTableCell around;
+
+    cell = LamTableFindCell(table, &place->point, level, &around);
+    for (int c = 0; cell && c < 8; c++) {
+      const LamTableNode *node = cell->node[c] < 0 ? NULL : &table->nodes[cell->node[c]];
+
+      for (int line = 0; node && node->level == level && line < LamTableLines(table); line++) {
+        const LamTableState *at[2];
+
+        LamTableBracket(table, node, &place->point, line, at);
+        if (!at[0] || !at[1] || !LamTableRestsOn(at, 0, &place->point) || !LamTableRestsOn(at, 1, &place->point) ||
+            at[1]->j - at[0]->j <= ends[1] - ends[0])
+          continue;
+        widest = level;
+        for (int e = 0; e < 2; e++) ends[e] = at[e]->j;
+      }
+    }
+  }
+  return widest;
+}
+
 /* Outside the range of node places, or strains that are not finite. */
 static PetscBool IsOutside(LamTable table, const LamTablePlace *place)
 {
@@ -367,7 +399,7 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
   PetscReal along_strain, along_suction, along_z, tangent;
   LamResponse response;
   LamTablePlace place;
-  int ends[2];
+  int ends[2], wide[2], widest;
 
   PetscFunctionBeginUser;
   *n = 0;
@@ -386,10 +418,11 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
     if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   } else {
     Estimates(table, &place, &along_strain, &along_suction, &along_z, &tangent);
+    widest = WidestInterval(table, &place, wide);
     if (along_suction > along_strain &&
-        ends[1] - ends[0] > (table->grid->contact ? CONTACT_INTERVAL : BONDED_INTERVAL)) {
-      ends[0] = ends[1] = (ends[0] + ends[1]) / 2;
-      NeedCell(&needs, &place.point, place.leaf->level, ends);
+        wide[1] - wide[0] > (table->grid->contact ? CONTACT_INTERVAL : BONDED_INTERVAL)) {
+      wide[0] = wide[1] = (wide[0] + wide[1]) / 2;
+      NeedCell(&needs, &place.point, widest, wide);
     } else if (place.leaf->level < (table->grid->contact ? CONTACT_LEVEL : LAM_FINEST))
       NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   }
