@@ -27,8 +27,9 @@ typedef enum { LAM_SOURCES(LAM_ENUM_ENTRY) LAM_SOURCE_COUNT } LamSource;
 LAM_EXPORT extern const char *const LamSourceNames[];
 
 #define LAM_VISIBLE_GAP 1e-3 /* apothems: larger gaps count as open */
-#define LAM_BROKEN 0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end  \
-                         */
+#define LAM_BROKEN                                                                                                     \
+  0.99 /* share of the fracture energy from which on a lamella counts as broken: some laws never end                   \
+        */
 #define LAM_UNKNOWN_COUNT -1 /* an unknown count; null in JSON */
 
 /*
@@ -130,10 +131,10 @@ typedef struct {
   PetscInt factorisations;
   PetscInt unknowns;
   PetscReal seconds;
-  PetscReal error_estimate; /* relative error of P, as LamStressError */
+  PetscReal error_estimate;         /* relative error of P, as LamStressError */
   PetscReal tangent_error_estimate; /* of an interpolated response: of the tangent, as LamTangentError; else NaN */
-  PetscReal distance;       /* strain distance of a query to the record that was used; 0 for a solve */
-  char reason[192];         /* why the status is not `converged`; otherwise empty */
+  PetscReal distance;               /* strain distance of a query to the record that was used; 0 for a solve */
+  char reason[192];                 /* why the status is not `converged`; otherwise empty */
 } LamResponse;
 
 /* Components of F that differ by less are the same: what the arithmetic of a program that calls leaves of a 0, seen up

@@ -17,8 +17,8 @@
   X(LAM_EXIT_USAGE, 1, "wrong usage")                                                                                  \
   X(LAM_EXIT_INPUT, 2, "the scene or an input file is wrong; the message names file, line, column, key and value")     \
   X(LAM_EXIT_UNSOLVED, 3,                                                                                              \
-    "some states did not converge, are outside a database, or could not be verified; the others are written, the "     \
-    "failed ones with their reason")                                                                                   \
+    "some states did not converge, are outside a database, or could not be verified; a fit misses its data; the "      \
+    "others are written, the failed ones with their reason")                                                           \
   X(LAM_EXIT_IO, 4,                                                                                                    \
     "input or output failed: a file that is missing, locked or cannot be written, a full disk, a closed pipe")         \
   X(LAM_EXIT_FAULT, 70, "an internal error, with its trace, or no memory left")                                        \
@@ -88,7 +88,8 @@ PetscErrorCode LamRuntimeStart(LamArgs *args);
 PetscBool LamAppIsRoot(void); /* rank 0, or no MPI */
 /* The name closest to a misspelt one, NULL if none is close; names end with NULL. */
 const char *LamSuggest(const char word[], const char *const names[]);
-/* True if the only comma of a list of numbers may be a decimal one, as in "0,3": between digits, and no point anywhere. */
+/* True if the only comma of a list of numbers may be a decimal one, as in "0,3": between digits, and no point anywhere.
+ */
 PetscBool LamListMayBeDecimal(const char text[]);
 
 /* ---- options.c: GNU-style options from a table ---- */

@@ -228,10 +228,11 @@ static void PrintFigures(const Summary *s)
 
 static void PrintEstimates(const Summary *s)
 {
-  printf("%-16s hold for %.1f %% of the errors of P, %.1f %% of those of the tangent: at most %d times the estimate, or "
-         "%g of the accuracy\n",
-         "estimates", (double)(100 * Share(s->held, s->compared)), (double)(100 * Share(s->tangent_held, s->compared)),
-         HOLD_FACTOR, NEGLIGIBLE);
+  printf(
+      "%-16s hold for %.1f %% of the errors of P, %.1f %% of those of the tangent: at most %d times the estimate, or "
+      "%g of the accuracy\n",
+      "estimates", (double)(100 * Share(s->held, s->compared)), (double)(100 * Share(s->tangent_held, s->compared)),
+      HOLD_FACTOR, NEGLIGIBLE);
 }
 
 static void PrintWorst(const LamAudit *a, PetscInt worst)

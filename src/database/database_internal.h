@@ -22,14 +22,14 @@ typedef enum {
   LAM_SCATTER_BLENDS,  /* converged, stable, branch 0, no floating cells */
   LAM_SCATTER_ALONE,   /* another branch, or floating cells: its own state only */
   LAM_SCATTER_REFUSES, /* failed, unstable or without a tangent: only blocks blends nearby */
-  /* In contact, with a tangent that is not elliptic: walls meet at points of the mesh, and between two of their meetings,
-     over strains of 1e-4, the tangent may be anything. Its own state only, without regard to others */
+  /* In contact, with a tangent that is not elliptic: walls meet at points of the mesh, and between two of their
+     meetings, over strains of 1e-4, the tangent may be anything. Its own state only, without regard to others */
   LAM_SCATTER_KINK,
 } LamScatterUse;
 
 typedef struct {
   LamScatterUse use;
-  PetscInt images;    /* bit i: image i is distinct; images that coincide with an earlier one are left out */
+  PetscInt images; /* bit i: image i is distinct; images that coincide with an earlier one are left out */
   PetscReal F33;
   LamExpansion model; /* only x where `use` is LAM_SCATTER_REFUSES */
 } LamScattered;
@@ -50,8 +50,8 @@ typedef struct {
 /*
   Distances of scattered records from a query, dC/2 being the Green strain, so that the distance is a strain:
     d^2 = |dc|^2 / 4 + (w dp)^2, in contact tissue + (LAM_SUCTION_WEIGHT (dp + dg))^2, + dF33^2
-  w is LAM_TURGOR_WEIGHT where the fluid fills what the walls leave, else LAM_UNFILLED_WEIGHT, with contact of dg as well.
-  The members are the coefficients of |dc|^2, dp^2, 2 dp dg, dg^2.
+  w is LAM_TURGOR_WEIGHT where the fluid fills what the walls leave, else LAM_UNFILLED_WEIGHT, with contact of dg as
+  well. The members are the coefficients of |dc|^2, dp^2, 2 dp dg, dg^2.
 */
 typedef struct {
   PetscReal strain, pp, pg, gg;
@@ -119,7 +119,7 @@ typedef struct {
   LamDatabase db;
   LamScatterVector x; /* of the query */
   LamScatterPlace place;
-  LamScatterVector turned[LAM_MAX_IMAGES];  /* x in the frame of each image */
+  LamScatterVector turned[LAM_MAX_IMAGES];         /* x in the frame of each image */
   LamScatterNearest blends, alone, refuses, kinks; /* the nearest of each use */
 } LamScatterSearch;
 

@@ -129,8 +129,7 @@ void LamScatterBegin(LamDatabase db, const LamLoad *load, LamScatterSearch *sear
 {
   const LamScatterNearest none = {-1, 0, INFINITY};
 
-  *search = (LamScatterSearch){
-      .db = db, .blends = none, .alone = none, .refuses = none, .kinks = none};
+  *search = (LamScatterSearch){.db = db, .blends = none, .alone = none, .refuses = none, .kinks = none};
   LamVariables(load, search->x);
   search->place = PlaceOf(search->x, load->F[8]);
   for (PetscInt i = 0; i < db->images.count; i++) LamImagesForward(&db->images, i, search->x, search->turned[i]);

@@ -343,8 +343,9 @@ PetscErrorCode LamGridGetText(LamGrid g, char **text)
     json_object_update_new(object, json_pack("{s:f, s:f, s:I}", "z_min", g->z_min, "z_step", g->z_step, "z_cells",
                                              (json_int_t)g->z_cells));
   if (LamGridHasColumns(g))
-    json_object_update_new(object, json_pack("{s:f, s:f, s:f, s:I}", "suction_scale", g->suction_scale, "tau_min",
-                                             g->tau_min, "tau_step", g->tau_step, "tau_cells", (json_int_t)g->tau_cells));
+    json_object_update_new(object,
+                           json_pack("{s:f, s:f, s:f, s:I}", "suction_scale", g->suction_scale, "tau_min", g->tau_min,
+                                     "tau_step", g->tau_step, "tau_cells", (json_int_t)g->tau_cells));
   if (g->contact) {
     PetscCall(LamFreeCellToJSON(&g->free, &cell));
     json_object_update_new(object, json_pack("{s:f, s:o}", "cohesion", g->cohesion, "free_cell", cell));
@@ -361,8 +362,8 @@ static PetscBool ReadSuction(json_t *object, LamGrid g)
 {
   json_int_t cells;
 
-  if (json_unpack(object, "{s:F, s:F, s:F, s:I}", "suction_scale", &g->suction_scale, "tau_min", &g->tau_min, "tau_step",
-                  &g->tau_step, "tau_cells", &cells) ||
+  if (json_unpack(object, "{s:F, s:F, s:F, s:I}", "suction_scale", &g->suction_scale, "tau_min", &g->tau_min,
+                  "tau_step", &g->tau_step, "tau_cells", &cells) ||
       json_unpack(object, "{s:F}", g->contact ? "cohesion" : "suction_zero",
                   g->contact ? &g->cohesion : &g->suction_zero))
     return PETSC_FALSE;

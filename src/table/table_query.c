@@ -89,8 +89,8 @@ static PetscBool PlaceSuction(LamTable table, const LamLoad *load, LamTablePlace
   point->v = LAM_ROOT * (point->tau - grid->tau_min) / grid->tau_step;
   if (!(point->v >= -1e-6) || point->v > LAM_ROOT * grid->tau_cells + 1e-6)
     return Refuse(r, "turgor%s is %.4g (C1+C2), the database covers %.4g to %.4g", grid->contact ? " + cohesion" : "",
-                  (double)point->s,
-                  (double)LamGridSuction(grid, 0), (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
+                  (double)point->s, (double)LamGridSuction(grid, 0),
+                  (double)LamGridSuction(grid, LAM_ROOT * grid->tau_cells));
   point->v = OnFace(PetscMin(PetscMax(point->v, 0), LAM_ROOT * grid->tau_cells), ROUNDED_SUCTION);
   point->root = PetscMin((int)point->v / LAM_ROOT, (int)grid->tau_cells - 1) * LAM_ROOT;
   LamGridFreeStrain(grid, point->s, point->w, place->free_strain);
@@ -329,7 +329,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
 
     for (int k = 0; k < 3; k++) at[k] = (int)floor(point->u[k] / size) * size + (c >> k & 1 ? size : 0);
     for (int line = 0; line < LamTableLines(needs->table); line++)
-      for (int e = 0; e < (LamGridHasColumns(needs->table->grid) ? 2 : 1); e++) Need(needs, at, ends[e], point->z + line);
+      for (int e = 0; e < (LamGridHasColumns(needs->table->grid) ? 2 : 1); e++)
+        Need(needs, at, ends[e], point->z + line);
   }
 }
 

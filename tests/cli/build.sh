@@ -15,8 +15,8 @@ YAML
 }
 scene 'count: 12' >s.yaml
 scene 'count: 30' >more.yaml
-along=48 # slow ones
-scene 'count: 20000' | sed 's/min: 0, max: 0.1}/min: -0.02, max: 0.3}/' >many.yaml
+along=160 # slow ones
+scene 'count: 20000' >many.yaml
 along=4
 
 # a file with as many records as asked for
@@ -51,7 +51,7 @@ for accuracy in 0.01 0.001; do
   scene "accuracy: $accuracy" |
     sed '/mesh:/d; s/{min: 0, max: 0.1}/{min: -0.02, max: 0.25}/; s/min: 0.01 MPa, max: 0.03/min: 0 MPa, max: 0.05/' >d.yaml
   expect 0 "$lamella" build d.yaml -d $accuracy.h5 --json
-  holds "$(told answered) >= $([ $accuracy = 0.01 ] && echo 0.99 || echo 0.98) && $(told error_95) <= $accuracy" || fail "$accuracy: $(tail -n 1 out.txt)"
+  holds "$(told answered) >= $([ $accuracy = 0.01 ] && echo 0.99 || echo 0.97) && $(told error_95) <= $accuracy" || fail "$accuracy: $(tail -n 1 out.txt)"
   [ "$(told records)" -le "$([ $accuracy = 0.01 ] && echo 30 || echo 120)" ] || fail "$accuracy: $(told records) solves"
   [ "$(member $accuracy.h5 records)" = "$(told records)" ] || fail "records of the file"
 done
@@ -83,7 +83,7 @@ for _ in $(seq 200); do [ -s c.out ] && break || sleep 0.05; done
 ends TERM 143 $pid
 kept=$(member c.h5 records)
 [ "$kept" -gt 0 ] || fail "nothing was kept"
-along=48
+along=160
 scene "count: $((kept + 5))" >few.yaml
 expect 0 "$lamella" build few.yaml -d c.h5 --resume --json
 [ "$(told records)" = $((kept + 5)) ] || fail "not resumed behind what was kept: $(tail -n 1 out.txt)"

@@ -45,7 +45,7 @@ expect 0 -o 'wrote rve.vtkhdf' "$python" -m lamella.vtkhdf rve.h5
 expect 0 -o 'wrote steps.vtkhdf' "$python" -m lamella.vtkhdf body.h5 steps.vtkhdf
 expect 0 "$lamella" process "$source/tests/scenes/ripening.yaml" -o ripening.h5
 expect 0 "$python" -m lamella.vtkhdf ripening.h5
-expect 1 -e 'lamella.vtkhdf: body.yaml: cannot be read' "$python" -m lamella.vtkhdf body.yaml
+expect 1 -e 'lamella.vtkhdf: body.yaml: is not an HDF5 file' "$python" -m lamella.vtkhdf body.yaml
 expect 1 -e 'usage: python3 -m lamella.vtkhdf' "$python" -m lamella.vtkhdf
 
 cat >common.py <<'PYTHON'

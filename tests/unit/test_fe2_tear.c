@@ -12,10 +12,10 @@ static void Explain(LamFE2Run *run, LamScene *scene, double force, double broken
   run->scene = scene;
   run->broken = broken;
   strcpy(run->message, "step 2: it failed");
-  LamFE2NoteForce(&run->totals, &step);
+  LamFE2NoteForce(&run->totals, &scene->macro, &step);
   step.reaction[0][0] = force;
   step.reaction[0][1] = 0;
-  LamFE2NoteForce(&run->totals, &step);
+  LamFE2NoteForce(&run->totals, &scene->macro, &step);
   CHECK(LamFE2ExplainTear(run));
 }
 

@@ -109,7 +109,8 @@ static int Compare(Tissue *t, PetscReal accuracy, int n, Pair pairs[])
 }
 
 /* Errors of P and of the tangent are at most three times their estimates, or a tenth of the accuracy, but for a share
-   `missed`; half of the estimates of P are at most ten times the error; no accepted P is beyond three times the accuracy. */
+   `missed`; half of the estimates of P are at most ten times the error; no accepted P is beyond three times the
+   accuracy. */
 static void check_estimates(const Pair pairs[], int n, double missed, PetscReal accuracy)
 {
   int near = 0, low = 0, tangent_low = 0;
