@@ -47,6 +47,8 @@ static PetscBool IsPrinted(const LamMember *m, const LamResponse *response, Pets
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(derivatives); i++)
     if (!strcmp(m->name, derivatives[i])) return tangent;
+  if (!strcmp(m->name, "tangent_error_estimate"))
+    return (PetscBool)(tangent && response->source == LAM_SOURCE_DATABASE);
   if (!strcmp(m->name, "ellipticity") || !strncmp(m->name, "localisation", strlen("localisation")))
     return (PetscBool)(tangent || response->source == LAM_SOURCE_DATABASE);
   if (!strcmp(m->name, "reason")) return (PetscBool)(response->status != LAM_CONVERGED);
