@@ -98,7 +98,7 @@ static const char added_members[] =
     "gap_place opening_moment normal_place shear_place max_lamella_shear max_fibre_stretch "
     "max_wall_energy max_wall_tension wall_place mean_wall_tension min_gap "
     "indicators_trusted turgor_mean turgor_spread wall_ellipticity kink_place "
-    "kinked_fraction ellipticity localisation_normal localisation_mode ";
+    "kinked_fraction ellipticity localisation_normal localisation_mode tangent_error_estimate ";
 
 static PetscBool WasAdded(const char name[])
 {

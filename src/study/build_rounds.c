@@ -17,7 +17,7 @@ enum {
 enum { MOST_IDLE = 6 };
 /* With `sample.count`: the first finite accuracy, and the last. */
 #define FIRST_ACCURACY 0.125
-#define LAST_ACCURACY 1e-6
+#define LAST_ACCURACY 1e-8
 
 /* Adds the file's records of free cells to the table where the grid has none. */
 static PetscErrorCode AddFreeCells(LamRounds *rounds)
