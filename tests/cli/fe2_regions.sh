@@ -48,7 +48,7 @@ for run in cold warm; do "$lamella" fe2 fields.yaml --json -d db.h5 >$run.jsonl;
 near "$(shear direct.jsonl)" "$(shear cold.jsonl)" 0.02 || fail "a cache is another tissue than direct solves"
 for file in db.t1.h5 db.t2.h5 db.skin.t1.h5 db.skin.t2.h5; do [ -s $file ] || fail "there is no $file"; done
 [ ! -e db.h5 ] || fail "there is a database that nobody asks"
-expect 1 -e 'is the database of skin.t1' "$lamella" fe2 fields.yaml -d db.h5 -o ./db.skin.t1.h5
+expect 2 -e 'is of kind "database"' "$lamella" fe2 fields.yaml -d db.h5 -o ./db.skin.t1.h5
 "$lamella" fe2 fields.yaml --json -d db.h5 --response database >only.jsonl || fail "the databases do not answer alone"
 near "$(shear warm.jsonl)" "$(shear only.jsonl)" 0.01 || fail "the databases answer otherwise than their cache"
 
