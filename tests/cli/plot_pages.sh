@@ -109,7 +109,7 @@ assert "lamella: intact" not in words(pages[0])
 
 # what varies along the states, and the peak
 with Source("torn.h5") as source:
-    load, peak = curves.LoadAxis(source.responses, source.keys), curves.peak(source.responses)
+    load, peak = curves.LoadAxis(source.responses, source.keys, curves.Measured(source.responses, source.object("test"))), curves.peak(source.responses)
     assert load.component == (1, 1) and source.responses.P[peak, 1, 1] == source.responses.P[:, 1, 1].max()
     assert source.object("test")["component"] == "22"
 
