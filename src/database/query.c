@@ -6,7 +6,7 @@
   G changes the components in the plane in second order only, and adds P_3a = mu G_a with the shear modulus of a
   honeycomb at rest, mu = (C1 + C2) w / (2 - w),  w = J - V_lumen / V0 - V_gap / V0 the walls' share of the volume,
   Hashin and Shtrikman's upper bound for anti-plane shear, 0 to 2 % above that of hexagons (A3131 at rest, 2t/l 0.06 to
-  0.35). Fibres that are stretched or compressed make it 0.3 to 4 times as large: an error of P of at most 3 mu |G|.
+  0.35). Fibres that are stretched or compressed make it 0.16 to 4 times as large: an error of P of at most 3 mu |G|.
 */
 #include "database_internal.h"
 #include <math.h>

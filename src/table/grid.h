@@ -6,7 +6,7 @@
     contact  x_k = a(s) + unit i_k,    s = p + g
     s = zero + scale (exp(tau) - 1),   tau = tau_min + tau_unit j
   with a(s) the strain at which free cells touch (free_cell.h). Bonded tissue has columns where its response depends on
-  turgor by more than -p J (LamTurgorFills), and else the turgor of all its nodes. One unit is 2^-LAM_FINEST of a root
+  turgor by more than -p J (LamFluidFills), and else the turgor of all its nodes. One unit is 2^-LAM_FINEST of a root
   cell. The level of a node is the coarsest that contains all its i. Where the three directions are equivalent, i is
   sorted, ascending. A grid may also have the axis z = ln F33, with knots z_min + z_step k, k = 0 .. z_cells, not
   refined; a depends on it.

@@ -26,9 +26,9 @@ enum { KINK_LEVEL = 2 };
 enum { CONTACT_LEVEL = 3, CONTACT_INTERVAL = LAM_ROOT / 8, BONDED_INTERVAL = LAM_ROOT / 32 };
 
 /*
-  Weights of the error estimates of P and of the tangent, from held-out states of twelve tissues
-  (docs/results/verification.md): with them 97 % of the errors of P and 95 % of those of the tangent are below three
-  times the estimate. With contact Phi has kinks at the scale of the cells, so that the bubbles are no better than they
+  Weights of the error estimates of P and of the tangent, from held-out states of eleven tissues
+  (tests/bench/bench_unfilled.sh): 97 % of the errors of P and, but for cells of turgor 0 and 1 (91 %), 95 % of those of
+  the tangent are below three times the estimate. With contact Phi has kinks at the scale of the cells, so that the bubbles are no better than they
   are large, also next to a node.
 */
 #define SPREAD 0.25
