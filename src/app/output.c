@@ -205,6 +205,33 @@ static void PrintOddContact(const LamResponse *response, PetscReal MPa)
            (double)(response->energy_released * MPa));
 }
 
+/* Texts that differ in their numbers only. */
+static PetscBool SameWords(const char a[], const char b[])
+{
+  static const char digits[] = "0123456789.";
+
+  for (;; a++, b++) {
+    a += strspn(a, digits);
+    b += strspn(b, digits);
+    if (*a != *b || !*a) return (PetscBool)(*a == *b);
+  }
+}
+
+/* The reason of states one behind the other, once. */
+static void PrintReason(const char reason[], PetscInt state)
+{
+  static char first[sizeof(((LamResponse *)0)->reason)];
+  static PetscInt first_state;
+
+  if (state > first_state && SameWords(first, reason)) {
+    printf("      as in state %" PetscInt_FMT "\n", first_state);
+  } else {
+    printf("      %s\n", reason);
+    snprintf(first, sizeof(first), "%s", reason);
+    first_state = state;
+  }
+}
+
 PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales *scales, LamInterfaceLawType interface,
                                    PetscInt state)
 {
@@ -238,7 +265,7 @@ PetscErrorCode LamPrintResponseRow(const LamResponse *response, const LamScales 
            (double)(response->turgor_spread * MPa));
   PrintOddContact(response, MPa);
   PrintLocalisation(response, MPa);
-  if (response->status != LAM_CONVERGED) printf("      %s\n", response->reason);
+  if (response->status != LAM_CONVERGED) PrintReason(response->reason, state);
   PetscCall(FlushOutput());
   PetscFunctionReturn(0);
 }

@@ -198,8 +198,7 @@ PetscErrorCode LamDatasetCheck(const char path[], hid_t dataset, const char name
   ours = (PetscBool)(H5Pget_layout(list) == wanted && !H5Pget_nfilters(list) && !H5Pget_external_count(list));
   PetscCall(LamCloseHDF5(path, list));
   PetscCheck(ours, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s is compressed, in another file or stored otherwise than lamella does; the file is damaged", path,
-             name);
+             "%s: %s is compressed, in another file or stored otherwise than lamella does" LAM_FOREIGN, path, name);
   PetscFunctionReturn(0);
 }
 
@@ -220,7 +219,7 @@ static PetscErrorCode Open(const char path[], hid_t file, const char name[], hid
   same = (PetscBool)(type >= 0 ? H5Tequal(o->type, type) > 0
                                : H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0);
   PetscCheck(same, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s is of another type than lamella writes; the file is damaged", path, name);
+             "%s: %s is of another type than lamella writes" LAM_FOREIGN, path, name);
   PetscFunctionReturn(0);
 }
 
@@ -277,7 +276,7 @@ static PetscErrorCode Read(const char path[], hid_t file, const char name[], con
   PetscFunctionBeginUser;
   PetscCall(GetShape(path, file, name, o, array));
   PetscCheck(!is_text || array->count == 1, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: %s is not one text; the file is damaged", path, name);
+             "%s: %s is not one text" LAM_FOREIGN, path, name);
   bytes = (size_t)array->count * H5Tget_size(o->type);
   PetscCall(PetscCalloc(bytes + 1, &array->values));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Dread(o->dataset, o->type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->values));

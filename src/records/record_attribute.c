@@ -84,7 +84,7 @@ static PetscErrorCode Open(const char path[], hid_t object, const char name[], O
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->type = H5Aget_type(o->attribute));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, o->space = H5Aget_space(o->attribute));
   PetscCheck(H5Sget_simple_extent_type(o->space) == H5S_SCALAR, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: attribute \"%s\" is not one value; the file is damaged", path, name);
+             "%s: attribute \"%s\" is not one value" LAM_FOREIGN, path, name);
   PetscFunctionReturn(0);
 }
 
@@ -93,7 +93,7 @@ static PetscErrorCode ReadNumber(const char path[], const char name[], const Ope
 {
   PetscFunctionBeginUser;
   PetscCheck(H5Tequal(o->type, file_type) > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: attribute \"%s\" is of another type; the file is damaged", path, name);
+             "%s: attribute \"%s\" is of another type than lamella writes" LAM_FOREIGN, path, name);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(o->attribute, memory_type, value));
   PetscFunctionReturn(0);
 }
@@ -118,7 +118,7 @@ static PetscErrorCode ReadText(const char path[], const char name[], const Opene
   PetscFunctionBeginUser;
   PetscCheck(
       H5Tget_class(o->type) == H5T_STRING && H5Tis_variable_str(o->type) == 0 && H5Tget_size(o->type) <= TEXT_BYTES,
-      PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is not a text; the file is damaged", path, name);
+      PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "%s: attribute \"%s\" is not a text of fixed length" LAM_FOREIGN, path, name);
   PetscCall(PetscCalloc(H5Tget_size(o->type) + 1, text));
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, H5Aread(o->attribute, o->type, *text));
   PetscFunctionReturn(0);

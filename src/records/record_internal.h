@@ -14,6 +14,10 @@
 #define LAM_RECORDS_PER_CHUNK 64    /* about 90 kB: a commit writes one or two chunks */
 #define LAM_RECORDS_PER_REPORT 4096 /* between reports of progress: a tenth of a second of a merge */
 
+/* What lamella never writes, at the end of a message. */
+#define LAM_FOREIGN                                                                                                    \
+  "; another program has written it anew (h5py, h5repack), or it is damaged: take the file as lamella wrote it"
+
 /* Advice for a damaged file, at the end of a message. */
 #define LAM_SALVAGE "; \"lamella merge NEW.h5 FILE --salvage\" keeps the sound records of a database"
 

@@ -122,7 +122,7 @@ static PetscErrorCode CheckPacked(const char path[], hid_t file_type)
     end += H5Tget_size(member);
     H5Tclose(member);
     PetscCheck(follows, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%s: member %d of /records does not lie behind the one before it; the file is damaged", path, i);
+               "%s: member %d of /records does not lie behind the one before it" LAM_FOREIGN, path, i);
   }
   PetscCheck(end == H5Tget_size(file_type) && end <= LAM_MAX_RECORD_BYTES, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "%s: a record of /records has %zu bytes, its members %zu; the file is damaged", path,
@@ -147,7 +147,7 @@ static PetscErrorCode CompareMember(const char path[], hid_t ours, int i, hid_t 
   if (at < 0) PetscFunctionReturn(0);
   LamCallHDF5(path, PETSC_ERR_USER_INPUT, found = H5Tget_member_type(file_type, (unsigned)at));
   wanted = H5Tget_member_type(ours, (unsigned)i);
-  if (H5Tequal(wanted, found) <= 0) *problem = "of another type";
+  if (H5Tequal(wanted, found) <= 0) *problem = "of another type than lamella writes";
   H5Tclose(wanted);
   H5Tclose(found);
   PetscFunctionReturn(0);
@@ -171,7 +171,7 @@ PetscErrorCode LamRecordTypeCheck(const char path[], hid_t file_type)
   H5Tclose(ours);
   PetscCall(ierr);
   PetscCheck(!problem, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%s: member \"%s\" of /records is %s; the file is damaged or of another format", path, name, problem);
+             "%s: member \"%s\" of /records is %s" LAM_FOREIGN, path, name, problem);
   if (!same) PetscCall(CheckPacked(path, file_type));
   PetscFunctionReturn(0);
 }
