@@ -30,6 +30,7 @@ ENDS = 0.025, 0.975  #: quantiles between which 95 % lie
 LEAST = 40  #: answers for these: one of 40 is 2.5 %, so that one lies beyond each end; of fewer the extremes are told
 CHANGE = 1e-6  #: by less, MPa or 1, nothing has changed
 TENSORS = {"F11": "", "F22": "", "F12": "", "P11": "MPa", "P22": "MPa", "P12": "MPa"}
+AREAS = {"rest": " per area at rest", "inflated": " per area of the inflated tissue"}
 POINT = {"firmness": "MPa", "turgor": "MPa", "osmotic_pressure": "MPa"}
 BODY = {"turgor_min": "MPa", "turgor_mean": "MPa", "turgor_max": "MPa", "plasmolysed": ""}
 BOTH = {"water": "", "lumen_fraction": "", "walls": "", "lamella_normal_ratio": "", "lamella_shear_ratio": "",
@@ -39,7 +40,8 @@ QUANTITIES = POINT | BODY | BOTH | TENSORS  #: over states or time, and their un
 
 class _Told:
     """What the program has told of one scene: values of quantities at `at`, numbers of states or s; `figures`, `first`:
-    what happens first, and `first_at` at which load factor or time; `reason`: why it is not solved to the end."""
+    what happens first, and `first_at` at which load factor or time; `reason`: why it is not solved to the end; `inflated`:
+    whether F counts from the inflated tissue."""
 
     def __init__(self, command: str, run: program.Run, failure: bool) -> None:
         rows = [row for row in run.objects if "state" in row or "step" in row]
@@ -51,6 +53,7 @@ class _Told:
         found = figures_in(run.objects, failure, run.complete)
         self.figures = {name: found[name] / FACTORS[FIGURES[name]] for name in FIGURES if name in found}
         self.component = next((row["test"].get("component") for row in run.objects if row.get("test")), None)
+        self.inflated = any(row.get("from_inflated") for row in rows)
         self.first: str | None = None
         self.first_at = np.nan
         if command == "process":
@@ -199,6 +202,7 @@ def bands(scene: str | os.PathLike[str], samples: int, command: str | None = Non
     if not solved:
         raise InputError(f"{path}: none of {samples} samples could be solved; the first one: {_words(told[0])}")
     axis, series = _series(own, solved, solver, text)
+    reference = (text["load"][0] if solver == "rve" else text["process"]).get("reference", "rest")
     names = [name for name in FIGURES if any(name in t.figures for t in (own, *solved))]
     figures = []
     for name in names:
@@ -211,10 +215,17 @@ def bands(scene: str | os.PathLike[str], samples: int, command: str | None = Non
     return {"lamella_uncertainty": 1, "scene": path, "command": solver, "samples": samples, "answered": answered,
             "failed": failed, "parameters": [{"key": p.key, "unit": p.unit, "bounds": [p.value(0), p.value(1)],
             "scene": value_in(text, p), "values": values[:, k].tolist()} for k, p in enumerate(parameters)],
-            "axis": axis, "series": series, "figures": figures, "first": _first(own, solved, solver)}
+            "reference": reference if own.inflated else None, "axis": axis, "series": series, "figures": figures, "first": _first(own, solved, solver)}
 
 
 # ---- for people ----
+
+def counted(name: str, area: str | None) -> str:
+    """What F counts from, or P is per area of, where that is not the tissue at rest; a component of either by name."""
+    if area is None or name not in TENSORS:
+        return ""
+    return " from the inflated tissue" if name[0] == "F" else AREAS[area]
+
 
 def _titled(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
@@ -248,7 +259,8 @@ def table(told: Object) -> list[str]:
             own = first["scene"]["at"] if event["name"] == first["scene"]["name"] else None
             numbers = [None if v is None else v / one for v in (own, *(event["at"][p] for p in parts[1:]))]
             lines.append(_row(f"  {event['name']}", unit if event["at"]["count"] else "", numbers, event["samples"]))
-    return lines + _ending(told)
+    ways = {counted(of["name"], told["reference"]) for of in (axis, *told["series"])} - {""}
+    return lines + [f"{'F' if way.startswith(' from') else 'P'}{way}" for way in sorted(ways)] + _ending(told)
 
 
 def _ending(told: Object) -> list[str]:

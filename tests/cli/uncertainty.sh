@@ -20,6 +20,16 @@ YAML
 expect 0 -o "^first event:" -o "^  lamella_normal  .* h " -o "^40 samples of 2 keys: from ... to holds 95 %" \
   "$lamella" process rots.yaml --uncertainty 40 -o rots
 
+# what F and P count from is named, in the table, the file and the picture
+tissue mesh='along: 4, through: 1' >inflated.yaml <<'YAML'
+load: [{inflate: true, reference: inflated}, {ramp: {to: [[1.1, 0], [0, 1]], steps: 2}}]
+uncertain: [{key: rve.wall.C4, from: 0.5 MPa, to: 2 MPa}]
+YAML
+expect 0 -o "^F from the inflated tissue$" -o "^P per area of the inflated tissue$" "$lamella" rve inflated.yaml --uncertainty 3 -o inflated
+has inflated/uncertainty.json '"reference": "inflated"'
+expect 0 "$lamella" plot inflated/uncertainty.json -o inflated.svg
+has inflated.svg 'from the inflated tissue' 'per area of the inflated tissue'
+
 # walls that leave no lumen: a sample that has no answer is told and left out
 sed 's/^uncertain.*/uncertain: [{key: rve.cell.wall_thickness, from: 10 um, to: 200 um}]/' one.yaml >thick.yaml
 expect 3 -o '"reason": "rve.cell.wall_thickness' "$lamella" rve thick.yaml --uncertainty 4 -o thick --json --processes 1

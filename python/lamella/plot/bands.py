@@ -5,6 +5,7 @@ median, and what the scene's own values give; figures of a test; and what happen
 import numpy as np
 
 from .. import InputError
+from ..uncertainty import counted
 from ..units import time_unit
 from .fits import ACROSS, GAP, HIGH, MARGIN, rows, titled
 from .page import DASHES, LINES, NOW, WIDTH, Page, legend, limits, settle, styled
@@ -24,9 +25,9 @@ ORDER = ("firmness", "turgor", "turgor_mean", "lamella_normal_ratio", "wall_rati
          "debonded_fraction", "walls")
 
 
-def _label(name, unit):
+def _label(name, unit, reference=None):
     words = titled(WORDS.get(name, name.replace("_", " ").replace(".", ", ")))
-    return f"{words} ({unit.replace('^3', '³')})" if unit else words
+    return (f"{words} ({unit.replace('^3', '³')})" if unit else words) + counted(name, reference)
 
 
 def _numbers(values):
@@ -42,7 +43,8 @@ class _Axis:
         if unit == "s":
             unit, self.one = time_unit(self.values[-1])
         self.values = self.values / self.one
-        self.label, self.whole = _label(axis["name"], unit), axis["name"] == "state"
+        self.reference = told.get("reference")  # None in files of 0.1
+        self.label, self.whole = _label(axis["name"], unit, self.reference), axis["name"] == "state"
 
 
 def _ways(values):
@@ -64,7 +66,7 @@ def _band(axes, axis, of):
         axes.plot(axis.values, line, color=LINES[0], linewidth=0.5)
     axes.plot(axis.values, median, color=LINES[0], linewidth=1.3, marker=marker, label="median")
     axes.plot(axis.values, own, color=NOW, linewidth=1.0, linestyle=DASHES, marker=marker, label="scene")
-    axes.set(xlabel=axis.label, ylabel=_label(of["name"], of["unit"]))
+    axes.set(xlabel=axis.label, ylabel=_label(of["name"], of["unit"], axis.reference))
     if axis.whole:
         axes.xaxis.get_major_locator().set_params(integer=True)
 
