@@ -18,7 +18,7 @@ static void NodePath(const LamNode *node, char path[KEY_LENGTH])
   NodePath(node->parent, path);
   used = strlen(path);
   if (node->index) {
-    snprintf(path + used, KEY_LENGTH - used, "[%" PetscInt_FMT "]", node->index);
+    snprintf(path + used, KEY_LENGTH - used, "[%" PetscInt_FMT "]", node->index - 1);
   } else if (node->name) {
     snprintf(path + used, KEY_LENGTH - used, "%s%.40s", used ? "." : "", node->name);
   }

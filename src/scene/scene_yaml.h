@@ -32,7 +32,7 @@ struct LamNode_s {
   PetscBool is_null; /* a scalar without text, or the plain words null and ~ */
   char *name;        /* key, if the node is an entry of a map; else NULL */
   int name_line, name_column;
-  PetscInt index; /* index from 1, if the node is an item of a list; else 0 */
+  PetscInt index; /* of an item of a list from 1, else 0; in messages and keys of `uncertain` from 0 */
   PetscInt count; /* number of entries of a map or items of a list */
   LamNode *parent, *first, *last, *next;
   LamNode *allocated; /* the node allocated before this one */

@@ -76,7 +76,7 @@ static PetscErrorCode CheckRegions(MPI_Comm comm, const LamReporter *reporter, c
   for (PetscInt r = 0; r < n && LamIsFirst(comm); r++) {
     if (covered[r][1]) continue;
     LamReportWarning(reporter, "%s: macro.regions[%d]: %s: %s; %s",
-                     LamScenePlaceText(scene, &scene->regions[r].place, at), (int)r + 1, scene->regions[r].name,
+                     LamScenePlaceText(scene, &scene->regions[r].place, at), (int)r, scene->regions[r].name,
                      covered[r][0] ? "later regions cover all of it, so its tissue is nowhere"
                                    : "covers no material point, so its tissue is nowhere",
                      covered[r][0] ? "write it behind them, or leave it out"

@@ -205,7 +205,7 @@ void LamTurgorWarning(const LamScene *scene, char text[LAM_TURGOR_TEXT])
   for (PetscInt r = 0; r < scene->region_count && !text[0]; r++) {
     const LamRegion *region = &scene->regions[r];
 
-    snprintf(key, sizeof(key), "macro.regions[%d]: %s: turgor", (int)r + 1, region->name);
+    snprintf(key, sizeof(key), "macro.regions[%d]: %s: turgor", (int)r, region->name);
     Judge(scene, &region->micro, region->turgor, region->scales.stress * 1e-6, strength,
           LamScenePlaceText(scene, &region->place, at), key, text);
   }

@@ -21,7 +21,7 @@ done
 
 sed 's/on: rim/on: edge/' "$source/tests/scenes/pressed-disc.yaml" >unknown.yaml
 "$lamella" fe2 unknown.yaml 2>unknown.txt && fail "an unknown side is accepted"
-grep -q "macro.boundary\[3\].on: edge: is none of the names known here" unknown.txt || fail "an unknown side is not named"
+grep -q "macro.boundary\[2\].on: edge: is none of the names known here" unknown.txt || fail "an unknown side is not named"
 sed '/bottom, symmetry/d' "$source/tests/scenes/pressed-disc.yaml" >loose.yaml
 "$lamella" fe2 loose.yaml 2>loose.txt && fail "a loose body is accepted"
 grep -q "plates and indenters do not count" loose.txt || fail "a loose body is not explained"

@@ -19,9 +19,9 @@ told() {
 
 # regions without a material point
 body 'regions: [{name: skin, where: y > 5, cell: {wall_thickness: 20 um}}, {name: far, where: y > 50, cell: {wall_thickness: 30 um}}]' >far.yaml
-told 0 far.yaml '12:91: macro.regions\[2\]: far: covers no material point, so its tissue is nowhere; x and y are in mm; write another'
+told 0 far.yaml '12:91: macro.regions\[1\]: far: covers no material point, so its tissue is nowhere; x and y are in mm; write another'
 body 'regions: [{name: core, where: y > 5, cell: {wall_thickness: 20 um}}, {name: all, where: 1, cell: {wall_thickness: 30 um}}]' >under.yaml
-told 0 under.yaml '12:33: macro.regions\[1\]: core: later regions cover all of it, so its tissue is nowhere; write it behind them'
+told 0 under.yaml '12:33: macro.regions\[0\]: core: later regions cover all of it, so its tissue is nowhere; write it behind them'
 body 'regions: [{name: far, where: y > 50, cell: {wall_thickness: 30 um}}]' >none.yaml
 told 2 none.yaml '12:32: macro.regions: far: no region has a material point of the body; write expressions of x and y in mm'
 body 'regions: [{name: skin, where: y > 5, cell: {wall_thickness: 20 um}}]' >right.yaml

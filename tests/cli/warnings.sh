@@ -29,7 +29,7 @@ silent process whole.yaml
 [ "$(sed -n 's/.*"time": \([0-9.]*\).*/\1/p' out.txt | tr '\n' ' ')" = "0.0 3600.0 7200.0 10800.0 " ] ||
   fail "not the whole program twice: $(cat out.txt)"
 printf 'process:\n  duration: 1 h\n  surroundings: [{time: 0 h}, {time: 2 h, temperature: 30 degC}]\n' | soft >bath.yaml
-warned process bath.yaml 'bath.yaml:10:38: process.surroundings\[2\].time: 2 h: is never reached: the process ends at 1 h (process.duration, line 9)'
+warned process bath.yaml 'bath.yaml:10:38: process.surroundings\[1\].time: 2 h: is never reached: the process ends at 1 h (process.duration, line 9)'
 sed '/duration/d' bath.yaml >bath-whole.yaml
 silent process bath-whole.yaml
 
@@ -85,9 +85,9 @@ stored() { # TABLE
 }
 stored '[[0, 1], [1, 0.8]]' >short.yaml
 warned process short.yaml \
-  'short.yaml:11:68: process.kinetics\[1\].table\[2\]: \[1, 0.8\]: the table ends at 1 h, the process at 2 h: in between the factor stays at 0.8; write a pair for the end of the process'
+  'short.yaml:11:68: process.kinetics\[0\].table\[1\]: \[1, 0.8\]: the table ends at 1 h, the process at 2 h: in between the factor stays at 0.8; write a pair for the end of the process'
 stored '[[0, 1], [2, 0.8], [3, 0.7]]' >long.yaml
-warned process long.yaml 'long.yaml:11:78: process.kinetics\[1\].table\[3\]: \[3, 0.7\]: is never reached: the process ends at 2 h, the table at 3 h; write a longer'
+warned process long.yaml 'long.yaml:11:78: process.kinetics\[0\].table\[2\]: \[3, 0.7\]: is never reached: the process ends at 2 h, the table at 3 h; write a longer'
 stored '[[0, 1], [3, 0.8]]' >through.yaml
 silent process through.yaml
 
@@ -117,7 +117,7 @@ macro:
   steps: 1
   regions: [{name: skin, where: y > 5, turgor: {pressure: 0.4 MPa}}]
 YAML
-warned fe2 region.yaml 'region.yaml:12:33: macro.regions\[1\]: skin: turgor: 0.4 MPa: stretches'
+warned fe2 region.yaml 'region.yaml:12:33: macro.regions\[0\]: skin: turgor: 0.4 MPa: stretches'
 printf 'process:\n  output: 1 h\n  surroundings: [{time: 0 h}, {time: 1 h, turgor: 0.4 MPa}]\n' | soft >rises.yaml
 warned process rises.yaml 'rises.yaml: process.surroundings: turgor: 0.4 MPa: stretches the walls of free tissue by about 84 %'
 cat - <<'YAML' | soft >map.yaml

@@ -111,7 +111,7 @@ TEST(a_map_of_many_keys_is_refused)
 TEST(too_many_states_are_refused)
 {
   AssertRefusedRepeat(RVE "load:\n", "  - {ramp: {to: [[1, 0.1], [0, 1]], steps: 10000}}\n", 101, "",
-                      "scene.yaml:106:5: load[101]: {ramp: {to: [[1, 0.1], [0, 1]], steps: 10000}}: "
+                      "scene.yaml:106:5: load[100]: {ramp: {to: [[1, 0.1], [0, 1]], steps: 10000}}: "
                       "more than 1000000 states in all");
 }
 

@@ -180,9 +180,9 @@ TEST(mistakes_of_files_of_regions_are_named)
     const char *file, *text, *fragment;
   } bad[] = {
       {PERIOD ", \"wall_thickness\": 6", REGION(", cell: {apothem: 40 um}"),
-       "macro.regions[1].cell.apothem: given together with tissue"},
+       "macro.regions[0].cell.apothem: given together with tissue"},
       {PERIOD ", \"wall_thickness\": 6", REGION(", cell: {wall_thickness: 4 um}"), "has the cells and their walls"},
-      {PERIOD ", \"wall_thickness\": 40", REGION(""), "macro.regions[1].tissue"},
+      {PERIOD ", \"wall_thickness\": 40", REGION(""), "macro.regions[0].tissue"},
       {PERIOD, REGION(", cell: {wall_thickness: 31 um}"), "the walls, 31 um, fill cells"},
       {PERIOD ", \"classes\": [1]", REGION(""), "cell 0 is of class 1"},
       {"\"wall_thickness\": 6", REGION(""), "is a patch between grips, no material point"},
@@ -205,7 +205,7 @@ TEST(mistakes_are_named)
   static const struct {
     const char *text, *fragment;
   } bad[] = {
-      {"  regions: [{where: y > 9}]\n", "macro.regions[1].name: missing"},
+      {"  regions: [{where: y > 9}]\n", "macro.regions[0].name: missing"},
       {"  regions: [{name: a/b}]\n", "part of a file's name"},
       {"  regions: [{name: a}, {name: a}]\n", "another region has this name"},
       {"  regions: [{name: a, where: y >}]\n", "is no expression of x and y"},
@@ -213,7 +213,7 @@ TEST(mistakes_are_named)
       {"  regions: [{name: a, cell: {apothem: 10 um}}]\n", "the wall, 11.25 um, fills the cell"},
       {"  regions: [{name: a, cell: {wall_thickness: 75 um}}]\n", "the wall, 75 um, fills the cell"},
       {"  regions: [{name: a, interface: {law: bonded, cohesion: 1 MPa}}]\n", "contradicts law: bonded"},
-      {"  regions: [{name: a, wall: {law: mooney_rivlin, C4: 1 MPa}}]\n", "macro.regions[1].wall.C4"},
+      {"  regions: [{name: a, wall: {law: mooney_rivlin, C4: 1 MPa}}]\n", "macro.regions[0].wall.C4"},
       {"  fields: {turgor: {unit: MPa}}\n", "macro.fields.turgor.expression: missing"},
       {"  fields: {turgor: {expression: x, table: a.csv, unit: MPa}}\n", "given together with expression"},
       {"  fields: {turgor: {expression: x, unit: mm}}\n", "write the unit of a stress alone"},
