@@ -43,7 +43,7 @@ const char *const LamTearEndNames[] = {LAM_TEAR_ENDS(LAM_NAME_ENTRY)};
 #define LENGTHEN 3.0    /* of the separation from pass to pass, where the last one ended too soon */
 #define MARGIN 1.05     /* of the separation over that at which the last pass came apart */
 #define MOST_HALVINGS 6 /* of a step, as of one that jumps (lamella_step.c) */
-#define INEXACT 1e-3    /* error of the work of a step, over that work */
+#define INEXACT 2e-3    /* error of the work of a step, over that work */
 #define LEAST_WORK 0.06 /* that a step's work counts for at least, over the energy of a straight crack */
 #define FALL 0.125      /* share of the peak from point to point of a fall */
                         /* between them have the energy to 0.1 % */

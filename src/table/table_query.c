@@ -334,6 +334,23 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
   }
 }
 
+/* Needs the root cell around the point, along suction over its root interval, or the largest half, quarter, ... around
+   the point between whose ends no corner is known to have no solution. */
+static void NeedRootCell(Needs *needs, const LamTablePoint *point, int least)
+{
+  int ends[2] = {point->root, point->root + (LamGridHasColumns(needs->table->grid) ? LAM_ROOT : 0)};
+
+  for (;;) {
+    const int middle = (ends[0] + ends[1]) / 2;
+
+    *needs->n = 0;
+    needs->hopeless = PETSC_FALSE;
+    NeedCell(needs, point, 0, ends);
+    if (!needs->hopeless || ends[1] - ends[0] <= least) return;
+    ends[point->v < middle] = middle;
+  }
+}
+
 /* The interval of suction around the point common to all columns of the cell. If the point lies on an end, both ends
    are set to it. */
 static void CommonInterval(LamTable table, const LamTableCell *cell, const LamTablePoint *point, int ends[2])
@@ -400,7 +417,7 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
   PetscReal along_strain, along_suction, along_z, tangent;
   LamResponse response;
   LamTablePlace place;
-  int ends[2], wide[2], widest;
+  int ends[2], wide[2], widest, least;
 
   PetscFunctionBeginUser;
   *n = 0;
@@ -412,16 +429,16 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
     if (response.error_estimate <= accuracy) PetscFunctionReturn(0);
   }
   if (IsOutside(table, &place)) PetscFunctionReturn(0);
+  least = table->grid->contact ? CONTACT_INTERVAL : BONDED_INTERVAL;
   CommonInterval(table, place.leaf, &place.point, ends);
   if (!place.leaf)
-    NeedCell(&needs, &place.point, 0, ends);
+    NeedRootCell(&needs, &place.point, least);
   else if (!place.good) {
     if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   } else {
     Estimates(table, &place, &along_strain, &along_suction, &along_z, &tangent);
     widest = WidestInterval(table, &place, wide);
-    if (along_suction > along_strain &&
-        wide[1] - wide[0] > (table->grid->contact ? CONTACT_INTERVAL : BONDED_INTERVAL)) {
+    if (along_suction > along_strain && wide[1] - wide[0] > least) {
       wide[0] = wide[1] = (wide[0] + wide[1]) / 2;
       NeedCell(&needs, &place.point, widest, wide);
     } else if (place.leaf->level < (table->grid->contact ? CONTACT_LEVEL : LAM_FINEST))
