@@ -78,6 +78,7 @@ static void KeepResponse(LamMacro macro, const LamLoad *load, const LamResponse 
     for (PetscInt k = 0; k < n; k++)
       point->A[n * i + k] = response->tangent[9 * LamMacroEntry(macro, i) + LamMacroEntry(macro, k)];
   }
+  point->tangent_error = isfinite(response->tangent_error_estimate) ? response->tangent_error_estimate : 0;
   LamMacroKeepFields(response, point->field);
   point->percolating = response->percolating_directions;
 }

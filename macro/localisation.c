@@ -5,6 +5,9 @@
   With sealed cells the tangent includes their water. The water at each point is constant, so the tangent in a band is
     A - dP/dp (x) dP/dp / (w' + d2Psi/dp2),   w' = -v/K_w (sealed.c),
   (condensed pressure).
+
+  An interpolated tangent has an error dA, and the least value of n m A n m over unit vectors one of at most |dA|: a
+  point counts as localised where that value is below 0 by more than the estimate of |dA|.
 */
 #include <lamella/ellipticity.h>
 #include <math.h>
@@ -21,6 +24,14 @@ static void PointTangent(LamMacro macro, PetscInt p, PetscReal A[16])
 
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++) A[4 * i + j] += share * sealed->P_turgor[i] * sealed->P_turgor[j];
+}
+
+static PetscReal Size(const PetscReal A[16])
+{
+  PetscReal sum = 0;
+
+  for (int i = 0; i < 16; i++) sum += A[i] * A[i];
+  return PetscSqrtReal(sum);
 }
 
 /* Reduces to the smallest value of all ranks (among equal ones that of the lowest rank), with its normal and location.
@@ -58,7 +69,7 @@ PetscErrorCode LamMacroFindLocalisation(LamMacro macro, LamMacroStep *step)
     PointTangent(macro, p, A);
     if (macro->accepted[p].known) LamBandFind(A, &band);
     macro->accepted[p].field[LAM_POINT_ELLIPTICITY] = band.value;
-    if (LamEllipticityIsLost(band.value)) step->localised_points++;
+    if (LamEllipticityIsLost(band.value + macro->accepted[p].tangent_error * Size(A))) step->localised_points++;
     if (isnan(band.value) || band.value >= step->ellipticity) continue;
     step->ellipticity = band.value;
     for (int i = 0; i < 2; i++) {

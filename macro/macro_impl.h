@@ -82,6 +82,7 @@ typedef struct {
                       differently now */
   PetscReal P[9];
   PetscReal A[81]; /* [strains][strains] dP/dF of the components that vary */
+  PetscReal tangent_error; /* estimated, of A over its size; 0: solved */
   PetscReal field[LAM_POINT_FIELD_COUNT];
   PetscInt percolating; /* percolating_directions */
 } LamMaterialPoint;

@@ -64,7 +64,7 @@ typedef struct {
   PetscReal ellipticity;            /* minimum over the material points (ellipticity.h); NaN: unknown */
   PetscReal localisation_normal[2]; /* reference normal of the critical band there, */
   PetscReal localisation_place[2];  /* and the reference position of the point, macro lengths */
-  PetscInt localised_points;        /* number of points that have lost ellipticity */
+  PetscInt localised_points;        /* number of points that have lost it, by more than the estimated error of A */
   /* of the points with law `lamella`; without any NaN and PETSC_FALSE */
   PetscReal stored, dissipated,
       released;               /* sums over the points since the undeformed tissue, stress * length^2 or ^3: */

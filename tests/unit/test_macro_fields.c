@@ -64,6 +64,42 @@ MACRO_TEST(MeansAreByVolume)
   assert_near(from_means, area, 1e-13);
 }
 
+/* As an interpolated response, whose tangent has this error over its size. */
+static PetscReal tangent_error;
+
+static PetscErrorCode RespondInterpolated(void *ctx, PetscInt n, const LamLoad loads[], const PetscInt points[],
+                                          LamResponse responses[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(SyntheticRespond(ctx, n, loads, points, responses));
+  for (PetscInt i = 0; i < n; i++) responses[i].tangent_error_estimate = tangent_error;
+  PetscFunctionReturn(0);
+}
+
+/* At F = I and mu = -0.01, lambda = 2 the least value of n m A n m is mu, and A has a size of about 4. */
+static PetscInt LocalisedPoints(PetscReal error)
+{
+  PetscInt points;
+  FIXTURE fixture = {0};
+
+  tangent_error = error;
+  FixtureBiaxial(&fixture, 0, 0, 1);
+  FixtureSetUp(&fixture, PETSC_COMM_WORLD);
+  fixture.material->mu = -0.01;
+  fixture.material->respond = RespondInterpolated;
+  FixtureSolve(&fixture, LAM_MACRO_DONE);
+  points = FixtureLast(&fixture)->localised_points;
+  assert_near(FixtureLast(&fixture)->ellipticity, -0.01, 1e-12);
+  return points;
+}
+
+TEST(LossOfEllipticityIsBeyondTheErrorOfTheTangent)
+{
+  assert_true(LocalisedPoints(NAN) > 0);
+  assert_true(LocalisedPoints(0.002) == LocalisedPoints(NAN));
+  assert_int_equal(LocalisedPoints(0.01), 0);
+}
+
 /* Faces are held closed by p + g; the family that is pressed least decides. Bonded tissue has no such measure. */
 TEST(UnloadingIsOfTheLeastPressedFaces)
 {
