@@ -4,8 +4,7 @@
   F12 = F0_12 + D/h at P22 = 0, for the teeth of the crack slide over each other, and with F22 held would press for
   ever.
 
-  How far a layer tears is not known before: a curve that ends in less than half of its steps, or not within them, is
-  followed again with steps that fit.
+  How far a layer tears is not known before: a curve that has not come apart goes on in longer steps.
 
   Energies. Where the exact law of contact and the smooth one take turns, the energy lost in a jump and that between the
   laws cannot be separated. All states are therefore of one law: the smooth one, which has all of them, unless the scene
@@ -39,9 +38,8 @@ const char *const LamTearEndNames[] = {LAM_TEAR_ENDS(LAM_NAME_ENTRY)};
 #define INFLATING 8     /* steps: history begins with turgor, and its work is summed to second order */
 #define NOTHING 0.01    /* share of the peak: less counts as nothing, in two states on end */
 #define LEAST_PEAK 1e-7 /* C1 + C2: less is rounding, and nothing holds */
-#define MOST_PASSES 4   /* over a curve, to find its steps */
-#define LENGTHEN 3.0    /* of the separation from pass to pass, where the last one ended too soon */
-#define MARGIN 1.05     /* of the separation over that at which the last pass came apart */
+#define MOST_PARTS 4    /* of a curve that goes on until nothing holds, each of as many steps */
+#define LENGTHEN 3.0    /* of the separation from part to part */
 #define MOST_HALVINGS 6 /* of a step, as of one that jumps (lamella_step.c) */
 #define INEXACT 2e-3    /* error of the work of a step, over that work */
 #define LEAST_WORK 0.06 /* that a step's work counts for at least, over the energy of a straight crack */
@@ -261,31 +259,6 @@ static PetscErrorCode Advance(Layer *layer, PetscReal separation, PetscInt halvi
   PetscFunctionReturn(0);
 }
 
-/* One pass: `steps` equal steps to a separation, or until the ends of two steps bear nothing. */
-static PetscErrorCode Follow(Layer *layer, PetscReal separation, PetscInt steps, LamTearCurve *curve)
-{
-  PetscInt bare = 0;
-  LamTearPoint zero;
-  LamResponse response;
-
-  PetscFunctionBeginUser;
-  PetscCall(Begin(layer, curve->mode));
-  curve->count = 0;
-  curve->end = LAM_TEAR_SEPARATION;
-  PetscCall(PointOf(layer, &layer->zero, &zero));
-  PetscCall(AddPoint(&zero, curve));
-  for (PetscInt k = 1; k <= steps && bare < 2; k++) {
-    PetscCall(Advance(layer, separation * (PetscReal)k / (PetscReal)steps, MOST_HALVINGS, curve, &response));
-    if (response.status != LAM_CONVERGED) {
-      EndAt(curve, &response);
-      break;
-    }
-    bare = curve->points[curve->count - 1].traction < NOTHING * Peak(curve) ? bare + 1 : 0;
-  }
-  if (bare == 2) curve->end = LAM_TEAR_APART;
-  PetscFunctionReturn(0);
-}
-
 /* A first guess of the separation: that of the lamella at failure on all faces, and the elastic one at its strength. */
 static PetscReal FirstGuess(const LamTear *tear, PetscReal stiffness)
 {
@@ -300,24 +273,33 @@ static PetscReal Farthest(const Layer *layer, LamTearMode mode)
   return mode == LAM_TEAR_SHEAR ? Area(layer) : PETSC_INFINITY;
 }
 
-static PetscErrorCode FollowToEnd(LamTear *tear, Layer *layer, LamTearCurve *curve)
+/* In equal steps to a separation, on in longer ones unless it is given, until the ends of two steps bear nothing. */
+static PetscErrorCode Follow(LamTear *tear, Layer *layer, LamTearCurve *curve)
 {
   const PetscReal given = tear->separation / tear->scene->scales.length, farthest = Farthest(layer, curve->mode);
-  PetscReal separation = given > 0.0 ? given : PetscMin(farthest, FirstGuess(tear, curve->stiffness));
+  PetscReal from = 0.0, to = given > 0.0 ? given : PetscMin(farthest, FirstGuess(tear, curve->stiffness));
+  PetscInt bare = 0;
+  LamTearPoint zero;
+  LamResponse response;
 
   PetscFunctionBeginUser;
-  for (PetscInt pass = 0; pass < MOST_PASSES; pass++) {
-    PetscCall(Follow(layer, separation, tear->steps, curve));
-    if (given > 0.0 || curve->end == LAM_TEAR_UNSOLVED || curve->end == LAM_TEAR_STOPPED) break;
-    if (curve->end == LAM_TEAR_APART) {
-      const PetscReal reached = curve->points[curve->count - 1].separation;
-
-      if (2.0 * reached > separation) break;
-      separation = MARGIN * reached;
-    } else {
-      if (separation >= farthest) break;
-      separation = PetscMin(farthest, LENGTHEN * separation);
+  PetscCall(Begin(layer, curve->mode));
+  curve->count = 0;
+  PetscCall(PointOf(layer, &layer->zero, &zero));
+  PetscCall(AddPoint(&zero, curve));
+  for (PetscInt part = 0; part < MOST_PARTS; part++) {
+    for (PetscInt k = 1; k <= tear->steps && bare < 2; k++) {
+      PetscCall(Advance(layer, from + (to - from) * (PetscReal)k / (PetscReal)tear->steps, MOST_HALVINGS, curve, &response));
+      if (response.status != LAM_CONVERGED) {
+        EndAt(curve, &response);
+        PetscFunctionReturn(0);
+      }
+      bare = curve->points[curve->count - 1].traction < NOTHING * Peak(curve) ? bare + 1 : 0;
     }
+    curve->end = bare == 2 ? LAM_TEAR_APART : LAM_TEAR_SEPARATION;
+    if (bare == 2 || given > 0.0 || to >= farthest) break;
+    from = to;
+    to = PetscMin(farthest, LENGTHEN * to);
   }
   PetscFunctionReturn(0);
 }
@@ -413,7 +395,7 @@ static PetscErrorCode Tear(LamTear *tear, Layer *layer, Layer *bonded, LamTearMo
     curve.F0[1] = zero->load.F[4];
     curve.stiffness = Stiffness(layer);
     curve.straight = tear->layer.energy / Area(layer);
-    PetscCall(FollowToEnd(tear, layer, &curve));
+    PetscCall(Follow(tear, layer, &curve));
     PetscCall(SetCrack(bonded, &curve));
     if (curve.count > 1 && curve.end != LAM_TEAR_STOPPED && !(Peak(&curve) > LEAST_PEAK)) curve.end = LAM_TEAR_TORN;
   } else {
