@@ -149,7 +149,7 @@ LAM_EXPORT PetscErrorCode LamDatabaseMerge(const char out[], PetscInt n, const c
 
   The grid points (nodes) are lattice strains, the logarithms of the stretches of the three lattice directions, for
   contact tissue suction s = turgor + cohesion, and F33 if the sample box has a range of it; docs/theory/database.md,
-  The tabulated potential. LamKeyIsNode tells from its key whether a record is a node. The grid is coarse initially and
+  The tabulated potential. LamKeyIsNode: whether a record is a node, from its key. The grid is coarse initially and
   refined where it is queried; the nodes present determine range and accuracy of the table.
 */
 typedef struct LamGrid_s *LamGrid;

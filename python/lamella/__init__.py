@@ -141,7 +141,7 @@ class Responses:
 
     @staticmethod
     def help(name: str) -> str:
-        """What a member is, and its unit. InputError: there is none of that name."""
+        """What a member is, and its unit. InputError: no member has that name."""
         for member in MEMBERS:
             if member[0] == name:
                 return f"{member[5]} ({member[4]})"

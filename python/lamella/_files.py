@@ -61,7 +61,7 @@ def beginning(start: str) -> Kind:
 def may_write(path: Place, kind: Kind, what: str, overwrite: bool = False, inputs: Iterable[Place] = ()) -> Path:
     """The path, unless a file there is no `what`, which Lamella has not written: before the work begins.
 
-    overwrite: any plain file is replaced that is none of the inputs. InputError: it would replace something else;
+    overwrite: any plain file but an input is replaced. InputError: it would replace something else;
     OSError: there is no such folder, or nothing can be written to it.
     """
     path = Path(path)

@@ -100,8 +100,8 @@ def _duration(seconds: float) -> str:
 
 
 def progress(what: str) -> Callable[[int, int], None]:
-    """Shows on a terminal that this is being done, until the function that it gives has been told (done, total) with all
-    done; elsewhere nothing."""
+    """Shows on a terminal that this is being done, until the function that it returns is called with done = total;
+    elsewhere nothing."""
     if not sys.stderr.isatty():
         return lambda done, total: None
     _lines.append(_Line(what))

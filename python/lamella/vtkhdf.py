@@ -92,7 +92,7 @@ def _is_ours(path: Path) -> bool:
 def write(result: Result, path: str | os.PathLike[str], overwrite: bool = False) -> None:
     """Writes the states of a file of `rve` or `process`, in their present shape, or the steps of a body, in the shape
     at rest with the displacement u, as an UnstructuredGrid in time, with the fields of nodes and elements; SI units.
-    InputError: it would replace a file that is none of these, without overwrite."""
+    InputError: it would replace a file of another kind, without overwrite."""
     numbers = result.states()
     if not numbers:
         raise InputError(f"{result.file.filename}: of kind {result.kind}, has no states with a mesh")

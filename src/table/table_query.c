@@ -203,7 +203,7 @@ static void Estimates(LamTable table, const LamTablePlace *place, PetscReal *alo
   *along_strain = contact ? CONTACT_BEND * size_of_cell : SPREAD * Distance(&place->point, place->leaf) * size_of_cell;
   *along_strain = PetscMax(missing * *along_strain, StressSize(place, finer));
   *along_suction = (contact ? CONTACT_BUMP : BUMP) * bump;
-  *along_z = contact ? CONTACT_BUMP * bump_z : 0; /* bonded: knots are close enough, and no closer ones could be had */
+  *along_z = contact ? CONTACT_BUMP * bump_z : 0; /* bonded: knots are close enough, and their distance is fixed */
   *tangent = TANGENT * hypot(size_of_cell, bump) * (1 << place->leaf->level) / table->grid->step;
 }
 
