@@ -29,7 +29,7 @@ PetscReal LamSampleStudent(PetscInt freedom)
   const PetscReal z = 2.5758293035489, n = (PetscReal)freedom; /* z: of the normal distribution */
   const PetscReal z2 = z * z, z3 = z * z2, z5 = z3 * z2, z7 = z5 * z2, z9 = z7 * z2;
 
-  if (freedom < 1) return PETSC_INFINITY;
+  if (freedom < 1) return INFINITY; /* PETSC_INFINITY is finite */
   if (freedom == 1) return 63.656741; /* the expansion is right to 1 % from 4 on; exact below */
   if (freedom == 2) return 9.924843;
   if (freedom == 3) return 5.840909;
@@ -92,6 +92,6 @@ void LamSampleSum(PetscInt N, const PetscInt draws[], const PetscReal share[], P
     if (draws[i] > 0) squares += (PetscReal)draws[i] * PetscSqr(value[i] / share[i] - mean);
   *sum = certain + mean;
   *margin = 0;
-  if (drawn == 1) *margin = PETSC_INFINITY;
+  if (drawn == 1) *margin = INFINITY; /* one value has no variance */
   if (drawn > 1) *margin = LamSampleStudent(drawn - 1) * PetscSqrtReal(squares / (PetscReal)(drawn * (drawn - 1)));
 }
