@@ -334,12 +334,10 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
   }
 }
 
-/* Needs the root cell around the point, along suction over its root interval, or the largest half, quarter, ... around
-   the point between whose ends no corner is known to have no solution. */
-static void NeedRootCell(Needs *needs, const LamTablePoint *point, int least)
+/* Needs the root cell around the point between these ends of suction, or the largest half, quarter, ... of them around the
+   point between whose ends no corner is known to have no solution. */
+static void NeedRootCell(Needs *needs, const LamTablePoint *point, int least, int ends[2])
 {
-  int ends[2] = {point->root, point->root + (LamGridHasColumns(needs->table->grid) ? LAM_ROOT : 0)};
-
   for (;;) {
     const int middle = (ends[0] + ends[1]) / 2;
 
@@ -432,7 +430,7 @@ PetscErrorCode LamTableNeeds(LamTable table, const LamLoad *load, PetscReal accu
   least = table->grid->contact ? CONTACT_INTERVAL : BONDED_INTERVAL;
   CommonInterval(table, place.leaf, &place.point, ends);
   if (!place.leaf)
-    NeedRootCell(&needs, &place.point, least);
+    NeedRootCell(&needs, &place.point, least, ends);
   else if (!place.good) {
     if (place.leaf->level < KINK_LEVEL) NeedCell(&needs, &place.point, place.leaf->level + 1, ends);
   } else {
