@@ -46,10 +46,10 @@ def with_member(*names: str) -> Kind:
     """JSON objects that have all of these members."""
     def has(path: Path) -> bool:
         try:
-            told = json.loads(text_of(path))
+            found = json.loads(text_of(path))
         except ValueError:
             return False
-        return isinstance(told, dict) and told.keys() >= set(names)
+        return isinstance(found, dict) and found.keys() >= set(names)
     return has
 
 

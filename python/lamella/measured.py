@@ -28,6 +28,9 @@ CURVE_LINES = "F11, P11 (MPa) and 1.05, 0.012"  #: an example
 FIGURE_LINES = "figure, value, scatter and modulus (MPa), 3.6, 0.4"  #: an example
 OF_FAILURE = "failure."
 OF_PEAK, OF_ALL = ("peak.strain", "peak.stress", "energy_to_peak"), ("work", "returned", "hysteresis")
+#: what F counts from, and P is per area of, in labels
+FROM_INFLATED = " from the inflated tissue"
+AREAS = {"rest": " per area at rest", "inflated": " per area of the inflated tissue"}
 FACTORS = {"": 1.0, "MPa": 1e6, "kJ/m^3": 1e3}  #: SI values of the units of JSON
 TENSOR = 9  #: components
 #: units of members that scenes know: their dimension, and an example

@@ -20,7 +20,7 @@ import numpy as np
 from . import Error, InputError, parallel, program, scene_dict
 from ._files import inputs_of, make_folder, may_write, with_member, write_whole
 from ._served import UNSOLVED, end_with_program, progress as shown, served
-from .measured import FACTORS, FIGURES, figures_in, with_mesh
+from .measured import AREAS, FACTORS, FIGURES, FROM_INFLATED, figures_in, with_mesh
 from .parameters import Parameter, uncertain, value_in, varied
 from .units import time_unit
 
@@ -30,7 +30,6 @@ ENDS = 0.025, 0.975  #: quantiles between which 95 % lie
 LEAST = 40  #: answers for these: one of 40 is 2.5 %, so that one lies beyond each end; of fewer the extremes are told
 CHANGE = 1e-6  #: by less, MPa or 1, nothing has changed
 TENSORS = {"F11": "", "F22": "", "F12": "", "P11": "MPa", "P22": "MPa", "P12": "MPa"}
-AREAS = {"rest": " per area at rest", "inflated": " per area of the inflated tissue"}
 POINT = {"firmness": "MPa", "turgor": "MPa", "osmotic_pressure": "MPa"}
 BODY = {"turgor_min": "MPa", "turgor_mean": "MPa", "turgor_max": "MPa", "plasmolysed": ""}
 BOTH = {"water": "", "lumen_fraction": "", "walls": "", "lamella_normal_ratio": "", "lamella_shear_ratio": "",
@@ -215,7 +214,8 @@ def bands(scene: str | os.PathLike[str], samples: int, command: str | None = Non
     return {"lamella_uncertainty": 1, "scene": path, "command": solver, "samples": samples, "answered": answered,
             "failed": failed, "parameters": [{"key": p.key, "unit": p.unit, "bounds": [p.value(0), p.value(1)],
             "scene": value_in(text, p), "values": values[:, k].tolist()} for k, p in enumerate(parameters)],
-            "reference": reference if own.inflated else None, "axis": axis, "series": series, "figures": figures, "first": _first(own, solved, solver)}
+            "reference": reference if own.inflated else None, "axis": axis, "series": series, "figures": figures,
+            "first": _first(own, solved, solver)}
 
 
 # ---- for people ----
@@ -224,7 +224,7 @@ def counted(name: str, area: str | None) -> str:
     """What F counts from, or P is per area of, where that is not the tissue at rest; a component of either by name."""
     if area is None or name not in TENSORS:
         return ""
-    return " from the inflated tissue" if name[0] == "F" else AREAS[area]
+    return FROM_INFLATED if name[0] == "F" else AREAS[area]
 
 
 def _titled(name: str, unit: str) -> str:

@@ -103,6 +103,12 @@ static void PrintContactHeader(LamInterfaceLawType interface, const char *const 
   printf(" %8s %9s %8s", texts[4], texts[5], texts[6]);
 }
 
+/* The last reason printed in the present table, and its state; empty: none. */
+static struct {
+  char reason[sizeof(((LamResponse *)0)->reason)];
+  PetscInt state;
+} printed;
+
 PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource source)
 {
   static const char *const names[7] = {"cohesion", "opening", "debonded", "broken", "open", "largest", "floating"};
@@ -112,6 +118,7 @@ PetscErrorCode LamPrintResponseHeader(LamInterfaceLawType interface, LamSource s
   PetscFunctionBeginUser;
   if (!LamAppIsRoot()) PetscFunctionReturn(0);
   LamConsoleClear();
+  printed.reason[0] = '\0';
   printf("%5s %7s %7s %7s %7s %9s  %-14s %10s %10s %10s %10s %6s %10s", "state", "F11", "F12", "F21", "F22", "turgor",
          "status", "P11", "P12", "P21", "P22", "lumen", "traction");
   PrintContactHeader(interface, names);
@@ -217,18 +224,15 @@ static PetscBool SameWords(const char a[], const char b[])
   }
 }
 
-/* The reason of states one behind the other, once. */
+/* A reason that the last one printed in the table has, too, is replaced by the number of its state. */
 static void PrintReason(const char reason[], PetscInt state)
 {
-  static char first[sizeof(((LamResponse *)0)->reason)];
-  static PetscInt first_state;
-
-  if (state > first_state && SameWords(first, reason)) {
-    printf("      as in state %" PetscInt_FMT "\n", first_state);
+  if (SameWords(printed.reason, reason)) {
+    printf("      as in state %" PetscInt_FMT "\n", printed.state);
   } else {
     printf("      %s\n", reason);
-    snprintf(first, sizeof(first), "%s", reason);
-    first_state = state;
+    snprintf(printed.reason, sizeof(printed.reason), "%s", reason);
+    printed.state = state;
   }
 }
 

@@ -14,8 +14,8 @@
 
   A step is taken in halves, each of which ends in a state of the curve, down to 1/64, where its parts (lamella_step.c)
   have done other work than what is drawn between its ends, or where its work is not what its energies have become: a
-  jump lies between two states close to each other, and the kink of a stiff lamella is seen. Errors are compared with the
-  work of their own step, so that their sum is to that of the curve as they are to those.
+  jump lies between two states close to each other, and the kink of a stiff lamella is seen. Errors are relative to the
+  work of their own step, so that the work of the curve has no larger relative error.
 
   Where the traction falls in a jump the curve has a fall at the separation where what is drawn does the work of the
   layer: up to there the traction of the state before, from there that of the state after. A line between the two would
@@ -198,7 +198,7 @@ static void EndAt(LamTearCurve *curve, const LamResponse *response)
   snprintf(curve->reason, sizeof(curve->reason), "%s: %s", LamStatusNames[response->status], response->reason);
 }
 
-/* Separation between two states at which a fall from the traction of the one to that of the other does the layer's work. */
+/* Separation between two states at which a fall between their tractions does the layer's work. */
 static PetscReal FallAt(const LamTearPoint *a, const LamTearPoint *b)
 {
   const PetscReal D = b->separation - a->separation, fall = a->traction - b->traction;
@@ -289,7 +289,9 @@ static PetscErrorCode Follow(LamTear *tear, Layer *layer, LamTearCurve *curve)
   PetscCall(AddPoint(&zero, curve));
   for (PetscInt part = 0; part < MOST_PARTS; part++) {
     for (PetscInt k = 1; k <= tear->steps && bare < 2; k++) {
-      PetscCall(Advance(layer, from + (to - from) * (PetscReal)k / (PetscReal)tear->steps, MOST_HALVINGS, curve, &response));
+      const PetscReal share = (PetscReal)k / (PetscReal)tear->steps;
+
+      PetscCall(Advance(layer, from + (to - from) * share, MOST_HALVINGS, curve, &response));
       if (response.status != LAM_CONVERGED) {
         EndAt(curve, &response);
         PetscFunctionReturn(0);

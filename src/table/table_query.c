@@ -334,8 +334,8 @@ static void NeedCell(Needs *needs, const LamTablePoint *point, int level, const 
   }
 }
 
-/* Needs the root cell around the point between these ends of suction, or the largest half, quarter, ... of them around the
-   point between whose ends no corner is known to have no solution. */
+/* Needs the root cell around the point between these ends of suction. While a corner is known to have no solution at one
+   of them, the half around the point instead. */
 static void NeedRootCell(Needs *needs, const LamTablePoint *point, int least, int ends[2])
 {
   for (;;) {

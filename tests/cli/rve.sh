@@ -80,3 +80,8 @@ if [ -w /dev/full ]; then
   "$lamella" rve "$source/tests/scenes/shear-bonded.yaml" --json 2>err.txt >/dev/full
   [ $? -eq 4 ] || fail "a full disk goes unnoticed: $(cat err.txt)"
 fi
+
+# states one behind the other that have no solution for one reason: it is printed once
+tissue turgor='mode: none' mesh='along: 4, through: 1' >collapse.yaml <<<'load: [{ramp: {to: [[0.6, 0], [0, 0.4]], steps: 15}}]'
+expect 3 -o 'the lumen of cell 0 collapses' -o '^      as in state 6$' "$lamella" rve collapse.yaml --no-estimate
+[ "$(grep -c 'the lumen of cell 0 collapses' out.txt)" = 1 ] || fail "a reason is repeated: $(cat out.txt)"

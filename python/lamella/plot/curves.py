@@ -1,6 +1,7 @@
 """Stress over the load of a series of states."""
 import numpy as np
 
+from ..measured import AREAS, FROM_INFLATED
 from .page import EVENT, LINES, legend, limits, mark, pressure_unit
 
 COMPONENTS = ((0, 0), (0, 1), (1, 0), (1, 1))
@@ -46,9 +47,9 @@ class Measured:
         if "F_inflated" in test:
             lengths = np.diagonal(np.reshape(test["F_inflated"], (3, 3)))
             self.F = self.F / lengths
-            self.of_F, self.of_P = " from the inflated tissue", " per area at rest"
+            self.of_F, self.of_P = FROM_INFLATED, AREAS[test["reference"]]
             if test["reference"] == "inflated":
-                self.P, self.of_P = self.P * lengths / lengths.prod(), " per area of the inflated tissue"
+                self.P = self.P * lengths / lengths.prod()
 
 
 class LoadAxis:
